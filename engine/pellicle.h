@@ -1,0 +1,268 @@
+/* Pellicle: closed, oriented, non-self-intersecting triangulated surfaces from 3D images.
+ *
+ * The C API of the engine; the only installed header. It implements Lachaud & Montanvert,
+ * "Deformable Meshes with Automated Topology Changes for Coarse-to-fine 3D Surface Extraction";
+ * numbers in parentheses are its equations, section numbers are its sections.
+ *
+ * - Every function that can fail returns a plc_status; plc_context_message() then says in one line
+ *   what was wrong. No function exits, prints or throws.
+ * - A context may be used by one thread at a time; different contexts are independent.
+ * - Structs start with struct_size: fill them with their _defaults function, then change fields.
+ * - Handles are freed with their _destroy function, which takes NULL.
+ * - Results are the same bits for any thread count and any SIMD target.
+ */
+#ifndef PLC_PELLICLE_H
+#define PLC_PELLICLE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#define PLC_API
+#else
+#define PLC_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum plc_status {
+  PLC_OK = 0,
+  PLC_INVALID_ARGUMENT = 1, /* a parameter is outside its range */
+  PLC_INVALID_DATA = 2,     /* the image or mesh cannot be used */
+  PLC_OUT_OF_MEMORY = 3,
+  PLC_CANCELLED = 4, /* a callback asked to stop */
+  PLC_INTERNAL = 5   /* a bug of the engine, caught before it did harm */
+} plc_status;
+
+typedef enum plc_simd {
+  PLC_SIMD_AUTO = 0, /* the best of this machine */
+  PLC_SIMD_SCALAR = 1,
+  PLC_SIMD_SSE4 = 2,
+  PLC_SIMD_AVX2 = 3,
+  PLC_SIMD_AVX512 = 4
+} plc_simd;
+
+typedef enum plc_voxel_type {
+  PLC_U8 = 0,
+  PLC_I16 = 1,
+  PLC_U16 = 2,
+  PLC_I32 = 3,
+  PLC_F32 = 4
+} plc_voxel_type;
+
+typedef enum plc_space {
+  PLC_SPACE_LPS = 0,  /* patient space, mm, x to the left, y to the back, z to the head (as ITK) */
+  PLC_SPACE_RAS = 1,  /* patient space, mm, x to the right, y to the front, z to the head */
+  PLC_SPACE_VOXEL = 2 /* voxel indices of the input image, voxel centres at integers */
+} plc_space;
+
+typedef struct plc_context plc_context;
+typedef struct plc_surface plc_surface;
+
+/* "MAJOR.MINOR.PATCH"; static storage. */
+PLC_API const char* plc_version_string(void);
+
+/* ---- context ---------------------------------------------------------------------------- */
+
+typedef struct plc_context_options {
+  size_t struct_size;
+  int threads;   /* worker threads, 1 .. 1024; 0: one per core */
+  plc_simd simd; /* must be available on this machine */
+} plc_context_options;
+
+PLC_API void plc_context_options_defaults(plc_context_options* options);
+/* options may be NULL (defaults). On failure *context is NULL and, where error is not NULL, a line
+ * of at most error_size - 1 characters is written to it. */
+PLC_API plc_status plc_context_create(const plc_context_options* options, plc_context** context,
+                                      char* error, size_t error_size);
+PLC_API void plc_context_destroy(plc_context* context);
+/* The message of the last call on this context that failed; "" when none. Valid until the next
+ * call on the context. */
+PLC_API const char* plc_context_message(const plc_context* context);
+/* The number of threads and the SIMD target in use ("scalar", "sse4", "avx2", "avx512"). */
+PLC_API int plc_context_threads(const plc_context* context);
+PLC_API const char* plc_context_simd(const plc_context* context);
+
+/* ---- extraction ------------------------------------------------------------------------- */
+
+/* An image in memory; borrowed for the duration of a call. */
+typedef struct plc_image {
+  size_t struct_size;
+  plc_voxel_type type;
+  const void* voxels;   /* dims[0] * dims[1] * dims[2] values, x fastest */
+  int64_t dims[3];      /* each >= 2 */
+  double spacing[3];    /* mm between voxel centres, > 0 */
+  double origin[3];     /* LPS position of the centre of voxel (0,0,0), mm */
+  double direction[9];  /* row-major, columns are the unit axes of the image in LPS (as ITK) */
+} plc_image;
+
+/* Spacing 1, origin 0, identity direction, no voxels. */
+PLC_API void plc_image_defaults(plc_image* image);
+
+typedef enum plc_rest_length {
+  PLC_REST_ZERO = 0,  /* minimise the area (membrane) */
+  PLC_REST_MEAN = 1,  /* the mean edge length of the mesh at each step */
+  PLC_REST_VALUE = 2  /* rest_length_value */
+} plc_rest_length;
+
+typedef enum plc_init {
+  PLC_INIT_BUBBLE = 0, /* one bubble around the object on the coarsest level */
+  PLC_INIT_BUBBLES = 1 /* bubbles[0] x bubbles[1] x bubbles[2] bubbles over the image */
+} plc_init;
+
+typedef enum plc_bound {
+  PLC_BOUND_CLAMP = 0, /* the speed of each vertex is bounded (3.6, first method) */
+  PLC_BOUND_SCALE = 1  /* the time step is scaled to the fastest vertex (3.6, second method) */
+} plc_bound;
+
+typedef enum plc_anisotropy {
+  PLC_ANISOTROPY_PHYSICAL = 1, /* method 1 of 4.4: the mesh lives in mm */
+  PLC_ANISOTROPY_VOXEL = 2     /* method 2 of 4.4: the mesh lives in voxel proportions */
+} plc_anisotropy;
+
+#define PLC_MAX_LEVELS 32
+
+typedef struct plc_parameters {
+  size_t struct_size;
+  /* what to extract */
+  double iso;                       /* in the image's units, within its range; NAN: not set */
+  int inside_below;                 /* 0: the object is where the image is >= iso; 1: <= iso */
+  double level_iso[PLC_MAX_LEVELS]; /* pi_I per level, [0] for I_0, in the image's units */
+  int level_iso_count;              /* 0: derived; else levels + 1 */
+  double window_low, window_high;   /* image units mapped to 0 and 1; NAN: derived */
+  double pad_value;                 /* what surrounds the image; NAN: the outside end of window */
+  /* the pyramid */
+  int levels;       /* levels above I_0; -1: 3, or fewer when the image is small; 0: direct */
+  double reduction; /* rho, 1 < rho <= 2 */
+  /* the start */
+  plc_init init;
+  int bubbles[3]; /* each 1 .. 256 */
+  /* the model */
+  double curvature;  /* alpha_c (5), >= 0 */
+  double spring;     /* alpha_e (6), >= 0 */
+  plc_rest_length rest_length;
+  double rest_length_value; /* in units of delta, >= 0 */
+  double attraction;        /* |alpha_I| (7), > 0 */
+  double mass;              /* m (4), > 0 */
+  double damping;           /* gamma (4), >= 0 */
+  double time_step;         /* dt, > 0; lowered where the forces make it unstable */
+  double max_move;          /* bound of a vertex's movement per iteration, in delta, (0, 1] */
+  plc_bound bound;
+  plc_anisotropy anisotropy;
+  double epsilon;     /* kinetic energy along the normals below which a level has converged, > 0 */
+  int max_iterations; /* per level, >= 1 */
+} plc_parameters;
+
+PLC_API void plc_parameters_defaults(plc_parameters* parameters);
+
+typedef struct plc_progress {
+  size_t struct_size;
+  int level;         /* h of the image I_h in which the mesh evolves; counts down to 0 */
+  int levels;        /* levels above I_0 */
+  int iteration;     /* of this level, from 1 */
+  int64_t vertices;
+  double energy;     /* kinetic energy along the normals */
+  double fraction;   /* an estimate of what is done, 0 .. 1, never falling */
+  double seconds;    /* since the start of the call */
+} plc_progress;
+
+/* Called on the calling thread after every iteration. Return 0 to go on, any other to cancel. */
+typedef int (*plc_progress_fn)(const plc_progress* progress, void* user);
+
+/* PyramidalRecoverShape (fig. 13). progress may be NULL. On any status but PLC_OK *surface is
+ * NULL. The surface is closed, oriented outward and free of self-intersections. */
+PLC_API plc_status plc_extract(plc_context* context, const plc_image* image,
+                               const plc_parameters* parameters, plc_progress_fn progress,
+                               void* user, plc_surface** surface);
+
+/* ---- surface ---------------------------------------------------------------------------- */
+
+PLC_API void plc_surface_destroy(plc_surface* surface);
+PLC_API int64_t plc_surface_vertex_count(const plc_surface* surface);
+PLC_API int64_t plc_surface_face_count(const plc_surface* surface);
+/* xyz: 3 * vertex_count floats. Vertices are in the engine's canonical order. */
+PLC_API void plc_surface_positions(const plc_surface* surface, plc_space space, float* xyz);
+/* abc: 3 * face_count indices, counter-clockwise seen from outside in the given space. */
+PLC_API void plc_surface_faces(const plc_surface* surface, plc_space space, uint32_t* abc);
+/* xyz: 3 * vertex_count floats, unit normals, outward. */
+PLC_API void plc_surface_normals(const plc_surface* surface, plc_space space, float* xyz);
+/* 64-bit FNV-1a over, in this order: the number of vertices (u64), the bits of the positions in
+ * the engine's mesh space (x, y, z of vertex 0, 1, ...: three u32 each), then each vertex's valence
+ * (u32) and ring (u32 each, from its smallest neighbour on, counter-clockwise); little endian. */
+PLC_API uint64_t plc_surface_hash(const plc_surface* surface);
+
+/* What a mesh is: of the whole, over all components. */
+typedef struct plc_measures {
+  size_t struct_size;
+  int64_t vertices, faces;
+  int64_t components; /* of faces adjacent by an edge */
+  int64_t euler;      /* V - E + F */
+  int64_t genus;      /* sum over the components, for closed orientable ones; else -1 */
+  double area;        /* of the space measured in, squared (mm2 in patient space) */
+  double volume;      /* signed: > 0 when faces are outward */
+} plc_measures;
+PLC_API plc_status plc_surface_measure(plc_context* context, const plc_surface* surface,
+                                       plc_space space, plc_measures* measures);
+
+/* How the surface came to be, level by level. */
+typedef struct plc_level_report {
+  size_t struct_size;
+  int level;        /* h */
+  int64_t dims[3];  /* of I_h, padding included */
+  double unit;      /* U_h, mm */
+  double delta;     /* the invariant of (1)-(3) in mesh units (voxels of I_0 by default) */
+  double iso;       /* pi_I of this level, in the image's units */
+  int64_t iterations;
+  int64_t vertices; /* at the end of the level */
+  int converged;    /* 0: the iteration cap ended it */
+  double energy;    /* at the end */
+  double seconds_topology, seconds_normals, seconds_dynamics, seconds_total;
+  int64_t creations, inversions, deletions, annular, axial, tetrahedra, refinements;
+  int64_t deferred; /* operations that a limit put off to the next iteration */
+} plc_level_report;
+/* 0 .. plc_surface_level_count - 1, from coarse to fine. */
+PLC_API int plc_surface_level_count(const plc_surface* surface);
+PLC_API plc_status plc_surface_level(const plc_surface* surface, int index,
+                                     plc_level_report* report);
+/* Seconds of building the pyramid and of the evolution; the parameters as used, with everything
+ * that was derived filled in. */
+PLC_API void plc_surface_seconds(const plc_surface* surface, double* pyramid, double* evolution);
+PLC_API void plc_surface_parameters(const plc_surface* surface, plc_parameters* parameters);
+/* Smallest and largest voxel of the input. */
+PLC_API void plc_surface_input_range(const plc_surface* surface, double* low, double* high);
+
+/* ---- checking any mesh ------------------------------------------------------------------ */
+
+typedef struct plc_check {
+  size_t struct_size;
+  plc_measures measures;
+  int valid;    /* closed, manifold, oriented, outward, no degenerate face, no self-intersection */
+  int closed;   /* every edge has an even, non-zero number of faces, no repeated index in a face */
+  int manifold; /* no edge of > 2 faces, no vertex with > 1 umbrella */
+  int oriented; /* both faces of each edge run it in opposite directions */
+  int outward;  /* each component faces outward, walls of cavities inward; -1: not defined */
+  int64_t border_edges, non_manifold_edges, non_manifold_vertices, inconsistent_edges;
+  int64_t wrongly_oriented_components;
+  int64_t degenerate_faces;        /* of exactly zero area, or with a repeated index */
+  int64_t duplicate_points;        /* whose coordinates equal those of an earlier point */
+  int64_t isolated_vertices;
+  int64_t self_intersections;      /* pairs of faces that meet elsewhere than in what they share */
+  int64_t first_intersection[2];   /* the first such pair; -1, -1 */
+  double edge_min, edge_mean, edge_max;
+  double min_angle, max_angle;     /* degrees */
+  int32_t valence_min, valence_max;
+} plc_check;
+
+/* xyz: 3 * vertex_count finite values; abc: 3 * face_count indices below vertex_count. Predicates
+ * are exact. PLC_INVALID_DATA where an index or a value is out of range; an invalid mesh is PLC_OK
+ * with check->valid == 0. */
+PLC_API plc_status plc_check_mesh(plc_context* context, const double* xyz, int64_t vertex_count,
+                                  const uint32_t* abc, int64_t face_count, plc_check* check);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

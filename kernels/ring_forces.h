@@ -1,0 +1,41 @@
+// Internal forces over neighbour rings: curvature (5) and springs (6), and normals (3.8).
+#pragma once
+#include <cstdint>
+
+#include "kernels/ring.h"
+#include "kernels/simd.h"
+
+// Ranges [begin, end): begin and end are multiples of kRingLanes. Output streams are written for
+// every vertex of the range, 0 for deleted vertices and padding. Bits do not depend on `simd`:
+// every vertex sums its ring from slot 0 up, one operation at a time.
+namespace plc::kernels {
+
+// laplacian[v] = mean of the neighbours of v minus v, w = 0.
+void laplacian(SimdTarget simd, const RingView& ring, const Packed* position, uint32_t begin,
+               uint32_t end, Packed* laplacian);
+
+// f = alpha_c (L(v) - mean over the ring of L), L from laplacian() over the whole mesh: eq. (5).
+void curvature_force(SimdTarget simd, const RingView& ring, const Packed* laplacian, float alpha_c,
+                     uint32_t begin, uint32_t end, float* fx, float* fy, float* fz);
+
+// f += alpha_e sum (|y - x| - rest_length) (y - x) / |y - x|: eq. (6). Coincident neighbours add 0.
+void spring_force(SimdTarget simd, const RingView& ring, const Packed* position, float alpha_e,
+                  float rest_length, uint32_t begin, uint32_t end, float* fx, float* fy, float* fz);
+
+// Unit normal, outward: the sum of the cross products of successive ring edges, normalised;
+// 0 where the sum is 0.
+void normals(SimdTarget simd, const RingView& ring, const Packed* position, uint32_t begin,
+             uint32_t end, float* nx, float* ny, float* nz);
+
+// flags[v]: bit 0 when some edge of v is not longer than sqrt(min_squared) (constraint (1)), bit 1
+// when some edge is not shorter than sqrt(max_squared) (constraint (2)).
+void edge_violations(SimdTarget simd, const RingView& ring, const Packed* position,
+                     float min_squared, float max_squared, uint32_t begin, uint32_t end,
+                     uint8_t* flags);
+
+// Sum of the lengths of all edges seen from each vertex of the range (each edge of a mesh counts
+// twice over the mesh). The same bits for every target: 16 lane sums in double, added pairwise.
+double edge_length_sum(SimdTarget simd, const RingView& ring, const Packed* position,
+                       uint32_t begin, uint32_t end);
+
+}  // namespace plc::kernels

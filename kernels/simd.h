@@ -1,0 +1,20 @@
+// Which instruction set the kernels run on. A value, not a global: two contexts may differ.
+#pragma once
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace plc {
+
+enum class SimdTarget : uint8_t { kScalar, kSse4, kAvx2, kAvx512 };
+
+// The best target of this machine.
+SimdTarget best_simd_target();
+// Whether this machine (and this build) has the target; kScalar always is there.
+bool simd_target_available(SimdTarget target);
+// All targets available here, kScalar first.
+std::vector<SimdTarget> available_simd_targets();
+// "scalar", "sse4", "avx2", "avx512".
+std::string_view simd_target_name(SimdTarget target);
+
+}  // namespace plc
