@@ -69,7 +69,7 @@ bool coplanar_cones_meet(const Point3& v, Point3 a, Point3 b, Point3 c, Point3 d
   const int ac = turn(p.axis, v, a, c), ad = turn(p.axis, v, a, d);
   const int bc = turn(p.axis, v, b, c), bd = turn(p.axis, v, b, d);
   return (ac >= 0 && bc <= 0) || (ad >= 0 && bd <= 0) ||  // c or d between a and b
-         (ac <= 0 && ad >= 0) || (bc <= 0 && bd >= 0);    // a or b between c and d
+         (ac <= 0 && ad >= 0);                            // or else both a and b between c and d
 }
 
 // ---- faces without a common vertex ----------------------------------------------------------

@@ -1,0 +1,80 @@
+#include "engine/self_intersection.h"
+
+#include <algorithm>
+
+#include "engine/predicates.h"
+#include "engine/triangle_intersection.h"
+
+namespace plc {
+namespace {
+
+// Faces per task of the passes over all faces, leaves per task of the search.
+constexpr size_t kFaceBlock = 8192;
+constexpr size_t kLeafBlock = 64;
+// Tasks between two looks at the limit: enough to keep threads busy, few enough to stop early.
+constexpr size_t kWave = 32;
+
+}  // namespace
+
+std::vector<uint32_t> proper_faces(const double* xyz, const uint32_t* abc, size_t face_count,
+                                   const Executor& executor) {
+  const size_t blocks = (face_count + kFaceBlock - 1) / kFaceBlock;
+  std::vector<std::vector<uint32_t>> kept(blocks);
+  executor.run(blocks, [&](size_t block) {
+    for (size_t f = block * kFaceBlock; f < std::min(face_count, (block + 1) * kFaceBlock); ++f) {
+      const Triangle t = make_triangle(xyz, abc + 3 * f);
+      if (!collinear(t.corner[0], t.corner[1], t.corner[2])) {
+        kept[block].push_back(static_cast<uint32_t>(f));
+      }
+    }
+  });
+  std::vector<uint32_t> faces;
+  faces.reserve(face_count);
+  for (const std::vector<uint32_t>& part : kept) {
+    faces.insert(faces.end(), part.begin(), part.end());
+  }
+  return faces;
+}
+
+std::vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc,
+                                         const FaceTree& tree, const Executor& executor,
+                                         size_t limit) {
+  const size_t tasks = (tree.leaf_count() + kLeafBlock - 1) / kLeafBlock;
+  const size_t wave = limit == std::numeric_limits<size_t>::max() ? tasks : kWave;
+  std::vector<FacePair> all;
+  std::vector<std::vector<FacePair>> found(wave);
+  for (size_t first = 0; first < tasks && all.size() < limit; first += wave) {
+    executor.run(std::min(wave, tasks - first), [&](size_t task) {
+      std::vector<FacePair>& pairs = found[task];
+      pairs.clear();
+      const size_t begin = (first + task) * kLeafBlock;
+      const size_t end = std::min(begin + kLeafBlock, tree.leaf_count());
+      for (size_t leaf = begin; leaf < end && pairs.size() < limit; ++leaf) {
+        tree.overlapping_pairs(leaf, [&](uint32_t f, uint32_t g) {
+          const uint32_t *ids_f = abc + 3 * static_cast<size_t>(f),
+                         *ids_g = abc + 3 * static_cast<size_t>(g);
+          if (pairs.size() < limit &&
+              triangles_intersect(make_triangle(xyz, ids_f), make_triangle(xyz, ids_g))) {
+            pairs.emplace_back(std::min(f, g), std::max(f, g));
+          }
+        });
+      }
+    });
+    for (size_t task = 0; task < std::min(wave, tasks - first); ++task) {
+      all.insert(all.end(), found[task].begin(), found[task].end());
+    }
+  }
+  std::sort(all.begin(), all.end());
+  if (all.size() > limit) all.resize(limit);
+  return all;
+}
+
+std::vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc, size_t face_count,
+                                         const Executor& executor, size_t limit) {
+  const std::vector<uint32_t> faces = proper_faces(xyz, abc, face_count, executor);
+  FaceTree tree;
+  tree.build(xyz, abc, faces.data(), faces.size(), executor);
+  return self_intersections(xyz, abc, tree, executor, limit);
+}
+
+}  // namespace plc
