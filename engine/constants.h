@@ -1,0 +1,82 @@
+// Every constant of the paper and of our closing of its gaps, once, with its source and what
+// changing it does.
+#pragma once
+#include <cstdint>
+
+namespace plc {
+
+// ---- geometry of the mesh (3.2) -------------------------------------------------------------
+
+// (2): no edge as long as 2.5 delta. Below 2 a creation would make edges that violate (1).
+inline constexpr float kMaxEdge = 2.5F;
+// (3): non-neighbours are at least 2.5 / sqrt 3 delta apart: the longest distance between a vertex
+// and the nearest corner of the facet that it goes through. Smaller lets surfaces cross unseen.
+inline constexpr float kMinApart = 1.4433757F;
+// Each refinement divides the edge lengths by sqrt 3 (3.4).
+inline constexpr double kRefinement = 1.7320508075688772;
+// U_h / delta_h, within [1, 2.5 / sqrt 3] by (14). Larger means a finer mesh for the same image.
+inline constexpr double kUnitPerDelta = 1.2;
+
+// ---- slow vertices (3.6) --------------------------------------------------------------------
+
+// The constraints of a vertex are checked when it has moved 0.1 delta since its last check, or
+// after 50 iterations. The paper makes the period linear in the speed, which lets a vertex travel
+// 1.28 delta unchecked: ten times the violations of (1) for a fifth less topology time.
+inline constexpr float kCheckPath = 0.1F;
+inline constexpr int kCheckPeriod = 50;
+
+// ---- resolution (figure 9) ------------------------------------------------------------------
+
+// What makes the paper's loop finite: what is left over waits for the next iteration.
+inline constexpr int kMaxOperationsPerVertex = 40;
+inline constexpr int kMaxAxialPasses = 10;
+// Rounds of one resolution pass; a safety net far above what was seen (12).
+inline constexpr int kMaxRounds = 200;
+
+// ---- transformations ------------------------------------------------------------------------
+
+// Intermediary vertices of an axial transformation lie at this part of the way to the neighbour.
+// 1/2 costs 40 % more deletions and 55 % more axial transformations.
+inline constexpr float kAxialReach = 0.75F;
+// Facing sheets only: pairs whose normals agree more than this are one sheet seen edge-on.
+inline constexpr float kAxialMaxNormalDot = 0.5F;
+// Each copy of a cut cycle moves this part of the way to its neighbours outside the cycle; without
+// it the copies, which coincide, collide at once.
+inline constexpr float kAnnularRetreat = 0.55F;
+// A freshly cut pair is exempt from axial transformations for this long, while it does not
+// approach. A blind exemption lets sheets cross.
+inline constexpr uint32_t kCutExemption = 5;
+
+// The embedding guard looks for faces with a corner within this of the new ones, in delta: a point of
+// a triangle is within 1 / sqrt 3 of its longest edge of a corner, so that faces with edges up to
+// 3.46 delta are found. Edges reach 2.5 delta by (2) and 0.8 more by one movement of both ends.
+inline constexpr float kFaceReach = 2.0F;
+
+// Components up to this size are watched for turning inside out.
+inline constexpr uint32_t kTinyComponent = 40;
+// ... and deleted when their volume falls under this (in delta^3) or changes sign.
+inline constexpr double kTinyVolume = 0.5;
+
+// ---- dynamics (3.5, 5.1) --------------------------------------------------------------------
+
+// RK4 is stable on the imaginary axis up to 2.83 and damped modes need less: dt sqrt(k / m) is
+// kept below this, k the stiffest mode of the forces.
+inline constexpr double kStableFrequency = 2.2;
+// The energy is near 0 from rest, before anything has moved: a level runs at least this long, and
+// has converged when its energy was calm this many times in a row.
+inline constexpr int kMinIterations = 20;
+inline constexpr int kCalmIterations = 3;
+
+// ---- image ----------------------------------------------------------------------------------
+
+// Voxels of outside value around the image: what the border cuts comes out closed.
+inline constexpr int kPadVoxels = 6;
+
+// ---- schedule -------------------------------------------------------------------------------
+
+// Vertices per task: large enough to pay for a task, a multiple of the ring block.
+inline constexpr uint32_t kGrain = 1024;
+// Below this many vertices everything runs on the calling thread.
+inline constexpr uint32_t kSerialBelow = 4096;
+
+}  // namespace plc

@@ -1,0 +1,11 @@
+// Creation of a vertex on an edge that violates (2): figure 1a.
+#pragma once
+#include "engine/edge.h"
+
+namespace plc {
+
+// Splits u-v at its mid-point; the faces of the edge become four. Returns the new vertex, which has
+// the mean velocity of u and v. Changes the rings of u, v, a, b.
+uint32_t create_on_edge(Mesh& mesh, const Edge& edge);
+
+}  // namespace plc

@@ -1,0 +1,88 @@
+// Forces, Newton's law of motion by Runge-Kutta 4, movement bound and energy (3.5-3.8, 5.1).
+#pragma once
+#include <vector>
+
+#include "engine/mesh.h"
+#include "engine/schedule.h"
+#include "engine/statistics.h"
+#include "kernels/image.h"
+#include "kernels/integrate.h"
+#include "kernels/simd.h"
+
+namespace plc {
+
+enum class RestLength { kZero, kMean, kValue };
+enum class Bound { kClamp, kScale };
+
+// The model's coefficients, validated; see plc_parameters for units and ranges.
+struct Model {
+  float curvature = 0.4F;  // alpha_c
+  float spring = 0;        // alpha_e
+  RestLength rest_length = RestLength::kMean;
+  float rest_length_value = 0;  // in delta
+  float attraction = -1;        // alpha_I, negative when the object is bright
+  float mass = 1;
+  float damping = 0.5F;
+  float time_step = 1;
+  float max_move = 0.4F;  // in delta
+  Bound bound = Bound::kClamp;
+};
+
+// The largest time step, at most the model's, that RK4 takes stably (constants.h).
+float stable_time_step(const Model& model);
+
+// The movement part of one iteration. Owns the streams that live within a step:
+//
+//   stream     bytes  written by
+//   force      12     forces, per stage
+//   speed      12     rk4: velocity of the stage
+//   rate       12     rk4: sum of accelerations, after stage 3 the new velocity
+//   stage      2x16   rk4: position of the stage, read and written in turn
+//   laplacian  16     laplacian, per stage
+//   before     16     move: where the vertex was, for taking the movement back
+class Dynamics {
+ public:
+  Dynamics(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model);
+
+  // Moves every vertex once; displacement, velocity, normal and path of the mesh are written.
+  void step(const ImageView& image, float iso, Seconds& seconds);
+  // Mean of m (dx . n / (delta dt))^2 / 2 over the vertices, of the last step.
+  double energy() const { return energy_; }
+  // Positions before the last step.
+  const Buffer<Packed>& before() const { return before_; }
+
+ private:
+  void resize();
+  std::vector<Pass> passes(const ImageView& image, float iso, Seconds& seconds);
+  void add_stage(int stage, const ImageView& image, float iso, Seconds& seconds,
+                 std::vector<Pass>& table);
+  void stage_forces(int stage, const ImageView& image, float iso, uint32_t begin, uint32_t end);
+  void laplacians(int stage);
+  void forces_and_stage(int stage, const ImageView& image, float iso);
+  float fastest() const;
+  void scale_time_step(const ImageView& image, float iso, float longest);
+  void measure_rest_length();
+  void bound(const ImageView& image, float iso);
+  void move();
+  void measure_energy();
+  kernels::Rk4Streams streams(int stage);
+  const Packed* stage_position(int stage) const;
+  // body(begin, end) over blocks of kGrain.
+  void blocks(const std::function<void(uint32_t, uint32_t)>& body) const;
+  // Sum of body(begin, end) over blocks, in block order.
+  double block_sum(const std::function<double(uint32_t, uint32_t)>& body) const;
+
+  Mesh& mesh_;
+  const Schedule& schedule_;
+  SimdTarget simd_;
+  Model model_;
+  float time_step_;  // of this step
+  float rest_length_ = 0;
+  double energy_ = 0;
+  Streams3 force_, speed_, rate_;
+  Buffer<Packed> stage_[2];
+  Buffer<Packed> laplacian_;
+  Buffer<Packed> before_;
+};
+
+}  // namespace plc

@@ -1,0 +1,37 @@
+// Going past the paper: a transformation is refused when its new faces would meet the surface.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "engine/annular.h"
+#include "engine/axial.h"
+#include "engine/spatial_hash.h"
+
+namespace plc {
+
+// The faces that a transformation makes and those that it takes away. Vertices that do not exist
+// yet have ids from mesh.slots() on.
+struct Proposal {
+  struct Face {
+    std::array<uint32_t, 3> id;
+    std::array<Vec3, 3> place;
+  };
+  std::vector<Face> faces;
+  // Existing faces with any of these corners go, ...
+  std::vector<uint32_t> removed_corners;
+  // ... and those that have both ends of this edge.
+  std::array<uint32_t, 2> removed_edge{~0U, ~0U};
+};
+
+Proposal propose_inversion(const Mesh& mesh, const Edge& edge);
+Proposal propose_deletion(const Mesh& mesh, const Edge& edge, Vec3 place);
+Proposal propose_annular(const Mesh& mesh, const Cycle& cycle,
+                         const std::array<CutCopy, 6>& copies);
+Proposal propose_axial(const Mesh& mesh, const AxialPlan& plan);
+
+// True when no new face meets another new face, or a face that stays, elsewhere than in common
+// corners and edges; exact. The hash must hold every living vertex at its place. Faces with edges
+// beyond those that kFaceReach allows for may be overlooked.
+bool embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal);
+
+}  // namespace plc

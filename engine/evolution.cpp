@@ -1,0 +1,34 @@
+#include "engine/evolution.h"
+
+namespace plc {
+
+Evolution::Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model)
+    : mesh_(mesh), dynamics_(mesh, schedule, simd, model), guard_(mesh, schedule),
+      resolution_(mesh, schedule, simd) {}
+
+void Evolution::restart() {
+  resolution_.restart();
+  guard_.restart();
+}
+
+void Evolution::iterate(const ImageView& image, float iso, Seconds& seconds,
+                        OperationCounts& counts) {
+  const double start = now();
+  dynamics_.step(image, iso, seconds);
+  const double moved = now();
+  counts.reverted += guard_.take_back(dynamics_.before());
+  resolution_.run(++iteration_, false, counts);
+  const double end = now();
+  seconds.topology += end - moved;
+  seconds.total += end - start;
+}
+
+void Evolution::check_all(Seconds& seconds, OperationCounts& counts) {
+  const double start = now();
+  resolution_.run(++iteration_, true, counts);
+  const double end = now();
+  seconds.topology += end - start;
+  seconds.total += end - start;
+}
+
+}  // namespace plc

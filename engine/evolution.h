@@ -1,0 +1,32 @@
+// One iteration of deformation: the procedure Evolution of figure 9.
+#pragma once
+#include "engine/dynamics.h"
+#include "engine/motion_guard.h"
+#include "engine/resolution.h"
+#include "engine/statistics.h"
+
+namespace plc {
+
+class Evolution {
+ public:
+  Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model);
+
+  // The ids or delta of the mesh have changed: at the start of a level.
+  void restart();
+  // Moves the vertices, takes back what would make the surface meet itself, resolves the
+  // constraints of the vertices that are due (of all: check_all).
+  void iterate(const ImageView& image, float iso, Seconds& seconds, OperationCounts& counts);
+  // The constraints of all vertices, without a movement: at the end of a level.
+  void check_all(Seconds& seconds, OperationCounts& counts);
+  // Kinetic energy along the normals of the last iteration (5.1).
+  double energy() const { return dynamics_.energy(); }
+
+ private:
+  Mesh& mesh_;
+  Dynamics dynamics_;
+  MotionGuard guard_;
+  Resolution resolution_;
+  uint32_t iteration_ = 0;
+};
+
+}  // namespace plc

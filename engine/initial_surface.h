@@ -1,0 +1,26 @@
+// Initial surfaces (3.6): one bubble around the object, or a grid of bubbles.
+#pragma once
+#include <array>
+
+#include "engine/mesh.h"
+#include "pyramid/executor.h"
+#include "pyramid/status.h"
+
+namespace plc {
+
+// A box of mesh space.
+struct Extent {
+  std::array<double, 3> low{}, high{};
+};
+
+// One closed surface around the box, with edges of 1.15 to 2 times delta in the mean: an icosahedron
+// refined by (3.4) onto |x/a|^4 + |y/b|^4 + |z/c|^4 = 1, which circumscribes the box and wastes less
+// room than the ellipsoid does. mesh.delta = delta.
+void make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& executor);
+
+// counts[0] x counts[1] x counts[2] spheres over the box, apart from each other by (3).
+// kInvalidArgument when they would be too small for delta.
+Status make_bubbles(Mesh& mesh, const Extent& box, const std::array<int, 3>& counts, double delta,
+                    const Executor& executor);
+
+}  // namespace plc

@@ -1,0 +1,107 @@
+// The triangulated mesh (3.1): structure-of-arrays vertex streams and oriented neighbour rings.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "engine/neighbors.h"
+#include "engine/vec3.h"
+#include "kernels/ring.h"
+#include "pyramid/buffer.h"
+
+namespace plc {
+
+// Three float streams of one vector quantity, 12 bytes per vertex.
+struct Streams3 {
+  Buffer<float> x, y, z;
+  void resize(size_t n);
+  Vec3 at(uint32_t v) const { return {x[v], y[v], z[v]}; }
+  void set(uint32_t v, Vec3 a) { x[v] = a.x, y[v] = a.y, z[v] = a.z; }
+};
+
+// Vertices have dense ids 0 .. slots()-1; a deleted one has valence 0 and waits in the free list.
+// All streams are 64-byte aligned and padded to whole blocks of kRingLanes vertices.
+//
+//   stream         bytes  unit          written by
+//   position       12     mesh units    move, transformations
+//   packed         16     mesh units    the same; what is fetched by neighbour index
+//   velocity       12     per time      rk4 stage 3, transformations
+//   normal         12     1             normals
+//   displacement   12     mesh units    rk4, bound
+//   path           4      mesh units    move; reset when the constraints of v are checked
+//   idle           1      iterations    since the constraints of v were checked
+//   operations     1      count         resolution, in this iteration
+//   cut            4+4    id, iteration annular: which cut made v, and when (exemption from (3))
+//   rings          48+2   id            transformations (kernels/ring.h)
+//
+// Coordinates are of the mesh space: voxels of I_0 (method 2 of 4.4) or mm over U_0 (method 1).
+// Not thread-safe; distinct vertices may be written concurrently where a pass says so.
+class Mesh {
+ public:
+  Streams3 position, velocity, normal, displacement;
+  Buffer<Packed> packed;
+  Buffer<float> path;
+  Buffer<uint8_t> idle;
+  Buffer<uint8_t> operations;
+  Buffer<uint32_t> cut_id;
+  Buffer<uint32_t> cut_iteration;
+
+  // The invariant of (1)-(3), mesh units.
+  double delta = 1;
+
+  uint32_t slots() const { return slots_; }          // ids are below this
+  uint32_t padded() const;                           // slots, up to whole blocks
+  uint32_t vertex_count() const { return alive_; }   // not deleted
+  bool alive(uint32_t v) const { return valence_[v] != 0; }
+  uint32_t valence(uint32_t v) const { return valence_[v]; }
+  uint32_t neighbor(uint32_t v, uint32_t k) const { return view_.slot(v, k); }
+  bool adjacent(uint32_t u, uint32_t v) const;
+  RingView rings() const { return view_; }
+  Neighbors ring(uint32_t v) const;
+  Vec3 at(uint32_t v) const { return {packed[v].x, packed[v].y, packed[v].z}; }
+
+  void place(uint32_t v, Vec3 p);
+  // Takes an id from the free list (last freed first) or a new one; its ring is still empty, it
+  // counts as alive from set_ring on, and it is due for a check.
+  uint32_t create(Vec3 p, Vec3 velocity);
+  void destroy(uint32_t v);
+  void set_ring(uint32_t v, const Neighbors& ring);
+  // Edits of one ring that the transformations are made of.
+  void replace(uint32_t v, uint32_t old_neighbor, uint32_t new_neighbor);
+  void replace(uint32_t v, uint32_t old_neighbor, uint32_t first, uint32_t second);
+  void insert_after(uint32_t v, uint32_t neighbor, uint32_t added);
+  void remove(uint32_t v, uint32_t neighbor);
+
+  // Makes every constraint of v be checked at the next opportunity.
+  void wake(uint32_t v) { idle[v] = kAwake; }
+  static constexpr uint8_t kAwake = 255;
+
+  void clear();
+  void reserve(uint32_t vertices);
+  // New ids: new id = rank of v in `order`, which lists every living vertex once. Nothing but the
+  // ids changes.
+  void renumber(const std::vector<uint32_t>& order);
+  // Triples (v, r[i], r[i+1]) with v the smallest id, in order of v, then of the ring.
+  std::vector<uint32_t> faces() const;
+  uint64_t bytes() const;
+
+ private:
+  void grow(uint32_t slots);
+  void set_valence(uint32_t v, uint32_t valence);
+  uint32_t& column(uint32_t v, uint32_t k) {
+    return columns_[(v / kRingLanes * kRingColumns + k) * kRingLanes + v % kRingLanes];
+  }
+  uint32_t allocate_tail(uint32_t length);
+  void free_tail(uint32_t offset, uint32_t length);
+  void refresh_view() { view_ = {columns_.data(), valence_.data(), tail_.data()}; }
+
+  uint32_t slots_ = 0;
+  uint32_t alive_ = 0;
+  Buffer<uint32_t> columns_;
+  Buffer<uint16_t> valence_;
+  Buffer<uint32_t> tail_;
+  std::vector<uint32_t> free_tails_[16];  // by size class
+  std::vector<uint32_t> free_;
+  RingView view_;
+};
+
+}  // namespace plc

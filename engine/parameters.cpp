@@ -1,0 +1,219 @@
+#include "engine/parameters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "engine/constants.h"
+
+namespace plc {
+
+namespace {
+
+std::string text(double value) {
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.9g", value);
+  return buffer;
+}
+
+Status bad(const std::string& name, double value, const std::string& expected) {
+  return {ErrorCode::kInvalidArgument, name + " " + text(value) + ": must be " + expected};
+}
+
+struct Range {
+  const char* name;
+  double value;
+  bool valid;
+  const char* expected;
+};
+
+Status check_ranges(std::initializer_list<Range> ranges) {
+  for (const Range& r : ranges) {
+    if (!r.valid) return bad(r.name, r.value, r.expected);
+  }
+  return {};
+}
+
+// Far beyond any use; keeps every product of coefficients within floats.
+constexpr double kMaxCoefficient = 1e6;
+
+bool coefficient(double x) { return x >= 0 && x <= kMaxCoefficient; }
+bool positive(double x) { return x >= 1e-6 && x <= kMaxCoefficient; }
+
+Status check_levels(const plc_parameters& p) {
+  if (p.levels < -1 || p.levels >= PLC_MAX_LEVELS) {
+    return bad("levels", p.levels, "0 .. " + std::to_string(PLC_MAX_LEVELS - 1));
+  }
+  if (!(p.reduction > 1 && p.reduction <= 2)) {
+    return bad("reduction", p.reduction, "above 1 and at most 2");
+  }
+  if (p.level_iso_count < 0 || p.level_iso_count > PLC_MAX_LEVELS ||
+      (p.level_iso_count > 0 && p.levels >= 0 && p.level_iso_count != p.levels + 1)) {
+    return {ErrorCode::kInvalidArgument,
+            "level iso-values: " + std::to_string(p.level_iso_count) + " given, " +
+                std::to_string(std::max(p.levels, 0) + 1) + " expected (one per level)"};
+  }
+  return {};
+}
+
+Status check_choices(const plc_parameters& p) {
+  return check_ranges(
+      {{"init", static_cast<double>(p.init), p.init >= PLC_INIT_BUBBLE && p.init <= PLC_INIT_BUBBLES,
+        "a plc_init"},
+       {"rest length", static_cast<double>(p.rest_length),
+        p.rest_length >= PLC_REST_ZERO && p.rest_length <= PLC_REST_VALUE, "a plc_rest_length"},
+       {"bound", static_cast<double>(p.bound),
+        p.bound >= PLC_BOUND_CLAMP && p.bound <= PLC_BOUND_SCALE, "a plc_bound"},
+       {"anisotropy", static_cast<double>(p.anisotropy),
+        p.anisotropy >= PLC_ANISOTROPY_PHYSICAL && p.anisotropy <= PLC_ANISOTROPY_VOXEL,
+        "a plc_anisotropy"}});
+}
+
+}  // namespace
+
+Status check_parameters(const plc_parameters& p) {
+  if (std::isnan(p.iso)) return {ErrorCode::kInvalidArgument, "iso: not set"};
+  if (!std::isfinite(p.iso)) return bad("iso", p.iso, "finite");
+  if (Status s = check_levels(p); !s.ok()) return s;
+  if (Status s = check_choices(p); !s.ok()) return s;
+  for (const int n : p.bubbles) {
+    if (n < 1 || n > 256) return bad("bubbles", n, "1 .. 256 per axis");
+  }
+  for (int h = 0; h < p.level_iso_count; ++h) {
+    if (!std::isfinite(p.level_iso[h])) return bad("level iso-value", p.level_iso[h], "finite");
+  }
+  return check_ranges({
+      {"window low", p.window_low, !std::isinf(p.window_low), "finite"},
+      {"window high", p.window_high, !std::isinf(p.window_high), "finite"},
+      {"pad value", p.pad_value, !std::isinf(p.pad_value), "finite"},
+      {"curvature", p.curvature, coefficient(p.curvature), "0 .. 1e6"},
+      {"spring", p.spring, coefficient(p.spring), "0 .. 1e6"},
+      {"rest length", p.rest_length_value, coefficient(p.rest_length_value), "0 .. 1e6"},
+      {"attraction", p.attraction, positive(p.attraction), "1e-6 .. 1e6"},
+      {"mass", p.mass, positive(p.mass), "1e-6 .. 1e6"},
+      {"damping", p.damping, coefficient(p.damping), "0 .. 1e6"},
+      {"time step", p.time_step, positive(p.time_step), "1e-6 .. 1e6"},
+      {"max move", p.max_move, p.max_move > 0 && p.max_move <= 1, "above 0 and at most 1 delta"},
+      {"epsilon", p.epsilon, p.epsilon > 0 && p.epsilon <= 1, "above 0 and at most 1"},
+      {"max iterations", static_cast<double>(p.max_iterations), p.max_iterations >= 1,
+       "at least 1"},
+  });
+}
+
+Status derive_parameters(const VolumeView& volume, const VoxelRange& range, double inside_level,
+                         plc_parameters& p) {
+  const bool above = p.inside_below == 0;
+  if (range.low == range.high) {
+    return {ErrorCode::kInvalidData,
+            "constant image: every voxel is " + text(range.low) + ", there is no surface in it"};
+  }
+  const bool within = above ? p.iso > range.low && p.iso <= range.high
+                            : p.iso >= range.low && p.iso < range.high;
+  if (!within) {
+    return {ErrorCode::kInvalidArgument, "iso " + text(p.iso) + ": outside the image's range " +
+                                             text(range.low) + " .. " + text(range.high)};
+  }
+  // The window reaches as far beyond the iso-value as the object does on the average, on both sides,
+  // so that attraction and repulsion balance; see README, choosing parameters.
+  const double contrast = std::max(std::abs(inside_level - p.iso), (range.high - range.low) * 1e-3);
+  if (std::isnan(p.window_low)) {
+    p.window_low = std::max(range.low, p.iso - 1.0 * contrast);
+    if (p.window_low >= p.iso) p.window_low = p.iso - contrast;
+  }
+  if (std::isnan(p.window_high)) {
+    p.window_high = std::min(range.high, p.iso + 1.0 * contrast);
+    if (p.window_high <= p.iso) p.window_high = p.iso + contrast;
+  }
+  if (!(p.window_low < p.iso && p.iso < p.window_high)) {
+    return {ErrorCode::kInvalidArgument, "window " + text(p.window_low) + ", " +
+                                             text(p.window_high) + ": iso " + text(p.iso) +
+                                             " must lie inside it"};
+  }
+  for (int h = 0; h < p.level_iso_count; ++h) {
+    if (p.level_iso[h] <= p.window_low || p.level_iso[h] >= p.window_high) {
+      return {ErrorCode::kInvalidArgument,
+              "level iso-value " + text(p.level_iso[h]) + ": outside the window " +
+                  text(p.window_low) + ", " + text(p.window_high)};
+    }
+  }
+  if (std::isnan(p.pad_value)) p.pad_value = above ? p.window_low : p.window_high;
+  std::array<int64_t, 3> padded = volume.dims;
+  for (auto& n : padded) n += int64_t{2} * kPadVoxels;
+  const int deepest = max_levels(padded, p.reduction);
+  if (p.levels < 0 && p.level_iso_count > 0) p.levels = p.level_iso_count - 1;
+  if (p.levels < 0) p.levels = std::min(3, deepest);
+  return {};
+}
+
+double mean_inside(const VolumeView& volume, double iso, bool inside_above,
+                   const Executor& executor) {
+  // Fixed slices, summed in order: the same bits for any executor.
+  const auto slices = static_cast<size_t>(volume.dims[2]);
+  const auto per_slice = static_cast<size_t>(volume.dims[0] * volume.dims[1]);
+  std::vector<double> sum(slices, 0);
+  std::vector<int64_t> count(slices, 0);
+  const auto scan = [&](const auto* voxels, size_t z) {
+    for (size_t i = z * per_slice; i < (z + 1) * per_slice; ++i) {
+      const auto value = static_cast<double>(voxels[i]);
+      if (inside_above ? value < iso : value > iso) continue;
+      sum[z] += value;
+      ++count[z];
+    }
+  };
+  executor.run(slices, [&](size_t z) {
+    switch (volume.type) {
+      case VoxelType::kU8: return scan(static_cast<const uint8_t*>(volume.voxels), z);
+      case VoxelType::kI16: return scan(static_cast<const int16_t*>(volume.voxels), z);
+      case VoxelType::kU16: return scan(static_cast<const uint16_t*>(volume.voxels), z);
+      case VoxelType::kI32: return scan(static_cast<const int32_t*>(volume.voxels), z);
+      case VoxelType::kF32: return scan(static_cast<const float*>(volume.voxels), z);
+    }
+  });
+  double total = 0;
+  int64_t n = 0;
+  for (size_t z = 0; z < slices; ++z) {
+    total += sum[z];
+    n += count[z];
+  }
+  return n == 0 ? iso : total / static_cast<double>(n);
+}
+
+PyramidSpec pyramid_spec(const plc_parameters& p) {
+  PyramidSpec spec;
+  spec.reduction = p.reduction;
+  spec.levels = p.levels;
+  spec.window_low = p.window_low;
+  spec.window_high = p.window_high;
+  spec.pad_value = p.pad_value;
+  spec.pad_voxels = kPadVoxels;
+  return spec;
+}
+
+RecoverySpec recovery_spec(const plc_parameters& p, const std::array<double, 3>& spacing) {
+  RecoverySpec spec;
+  spec.inside_above = p.inside_below == 0;
+  Model& m = spec.model;
+  m.curvature = static_cast<float>(p.curvature);
+  m.spring = static_cast<float>(p.spring);
+  m.rest_length = static_cast<RestLength>(p.rest_length);
+  m.rest_length_value = static_cast<float>(p.rest_length_value);
+  // alpha_I is negative when the object is bright: (7).
+  m.attraction = static_cast<float>(spec.inside_above ? -p.attraction : p.attraction);
+  m.mass = static_cast<float>(p.mass);
+  m.damping = static_cast<float>(p.damping);
+  m.time_step = static_cast<float>(p.time_step);
+  m.max_move = static_cast<float>(p.max_move);
+  m.bound = static_cast<Bound>(p.bound);
+  spec.pad_voxels = kPadVoxels;
+  const double finest = *std::min_element(spacing.begin(), spacing.end());
+  for (size_t a = 0; a < 3; ++a) {
+    spec.space.step[a] = p.anisotropy == PLC_ANISOTROPY_PHYSICAL ? spacing[a] / finest : 1.0;
+  }
+  spec.init = static_cast<Init>(p.init);
+  spec.bubbles = {p.bubbles[0], p.bubbles[1], p.bubbles[2]};
+  spec.epsilon = p.epsilon;
+  spec.max_iterations = p.max_iterations;
+  return spec;
+}
+
+}  // namespace plc

@@ -1,0 +1,207 @@
+#include "engine/recovery.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/constants.h"
+#include "engine/evolution.h"
+#include "engine/refinement.h"
+
+namespace plc {
+
+namespace {
+
+// The box of mesh space that the part of an image on the object's side of iso fills; false when it
+// is empty.
+bool object_extent(const PyramidLevel& level, const ImageView& view, float iso, bool inside_above,
+                   Extent& box) {
+  std::array<int64_t, 3> low = level.dims;
+  std::array<int64_t, 3> high{-1, -1, -1};
+  size_t i = 0;
+  for (int64_t z = 0; z < level.dims[2]; ++z) {
+    for (int64_t y = 0; y < level.dims[1]; ++y) {
+      for (int64_t x = 0; x < level.dims[0]; ++x, ++i) {
+        if (inside_above ? level.values[i] < iso : level.values[i] > iso) continue;
+        const std::array<int64_t, 3> at{x, y, z};
+        for (size_t a = 0; a < 3; ++a) {
+          low[a] = std::min(low[a], at[a]);
+          high[a] = std::max(high[a], at[a]);
+        }
+      }
+    }
+  }
+  for (size_t a = 0; a < 3; ++a) {
+    if (high[a] < 0) return false;
+    // Half a voxel more: where the iso-surface may lie.
+    const auto at = [&](double voxel) {
+      return (voxel - static_cast<double>(view.offset[a])) / static_cast<double>(view.scale[a]);
+    };
+    box.low[a] = at(static_cast<double>(low[a]) - 0.5);
+    box.high[a] = at(static_cast<double>(high[a]) + 0.5);
+  }
+  return true;
+}
+
+class Recovery {
+ public:
+  Recovery(const Pyramid& pyramid, const RecoverySpec& spec, const Schedule& schedule,
+           SimdTarget simd, const RecoveryProgressFn& progress, Mesh& mesh)
+      : pyramid_(pyramid), spec_(spec), schedule_(schedule), progress_(progress), mesh_(mesh),
+        evolution_(mesh, schedule, simd, spec.model),
+        levels_(static_cast<int>(pyramid.levels.size()) - 1) {}
+
+  Status run(std::vector<LevelRecord>& records) {
+    if (Status s = start(); !s.ok()) return s;
+    for (int h = levels_; h >= 0; --h) {
+      records.emplace_back();
+      if (Status s = recover_shape(h, records.back()); !s.ok()) return s;
+    }
+    mesh_.renumber(morton_order(mesh_));
+    return {};
+  }
+
+ private:
+  // U_h / delta_h is the same on every level, within (14).
+  double delta_of(int h) const { return unit_of(h) / kUnitPerDelta; }
+  // U_h in mesh units.
+  double unit_of(int h) const {
+    return pyramid_.levels[static_cast<size_t>(h)].unit / pyramid_.levels[0].unit;
+  }
+  float iso_of(int h) const { return static_cast<float>(spec_.isos[static_cast<size_t>(h)]); }
+
+  Status start() {
+    const PyramidLevel& coarsest = pyramid_.levels.back();
+    const ImageView view = image_view(pyramid_, levels_, spec_);
+    Extent box;
+    if (!object_extent(coarsest, view, iso_of(levels_), spec_.inside_above, box)) {
+      return {ErrorCode::kInvalidData,
+              "level " + std::to_string(levels_) + ": no voxel of the image lies on the object's "
+              "side of the iso-value there; use fewer levels or set the iso-values of the levels"};
+    }
+    if (spec_.init == Init::kBubble) {
+      make_bubble(mesh_, box, delta_of(levels_), schedule_);
+      return {};
+    }
+    // The grid of bubbles spans the unpadded image.
+    const PyramidLevel& finest = pyramid_.levels[0];
+    for (size_t a = 0; a < 3; ++a) {
+      const auto voxels = static_cast<double>(finest.dims[a] - 2 * spec_.pad_voxels);
+      box.low[a] = -0.5 * spec_.space.step[a];
+      box.high[a] = (voxels - 0.5) * spec_.space.step[a];
+    }
+    return make_bubbles(mesh_, box, spec_.bubbles, delta_of(levels_), schedule_);
+  }
+
+  // Figure 12, first loop: refine until the density fits the image. With rho = sqrt 3 that is one
+  // refinement per level; for other factors delta is set to fit afterwards, and creations and
+  // deletions do the rest.
+  void adapt(int h, LevelRecord& record) {
+    const double target = delta_of(h);
+    const auto steps = std::lround(std::log(mesh_.delta / target) / std::log(kRefinement));
+    for (long i = 0; i < steps; ++i) {
+      refine(mesh_, schedule_);
+      ++record.operations.refinement;
+    }
+    mesh_.delta = target;
+    for (uint32_t v = 0; v < mesh_.slots(); ++v) mesh_.wake(v);
+    evolution_.restart();
+  }
+
+  Status recover_shape(int h, LevelRecord& record) {
+    record.level = h;
+    const double start = now();
+    adapt(h, record);
+    record.delta = mesh_.delta;
+    record.seconds.topology += now() - start;
+    record.seconds.total += now() - start;
+    const ImageView view = image_view(pyramid_, h, spec_);
+    int calm = 0;
+    double first_energy = 0;
+    for (int i = 1; i <= spec_.max_iterations && !record.converged; ++i) {
+      evolution_.iterate(view, iso_of(h), record.seconds, record.operations);
+      if (mesh_.vertex_count() == 0) return vanished(h);
+      record.iterations = i;
+      record.energy = evolution_.energy();
+      first_energy = std::max(first_energy, record.energy);
+      calm = record.energy < spec_.epsilon ? calm + 1 : 0;
+      record.converged = i >= kMinIterations && calm >= kCalmIterations;
+      if (progress_ && !progress_(progress(h, record, first_energy))) {
+        return {ErrorCode::kCancelled, "cancelled"};
+      }
+      renumber_if_scattered();
+    }
+    evolution_.check_all(record.seconds, record.operations);
+    if (mesh_.vertex_count() == 0) return vanished(h);
+    record.vertices = mesh_.vertex_count();
+    return {};
+  }
+
+  static Status vanished(int h) {
+    return {ErrorCode::kInvalidData,
+            "the surface vanished on level " + std::to_string(h) +
+                ": nothing there holds it at this iso-value; use fewer levels, or weaker internal "
+                "forces"};
+  }
+
+  // Neighbours far apart in memory cost three times as much: when a quarter of the ids is unused.
+  void renumber_if_scattered() {
+    if (mesh_.slots() - mesh_.vertex_count() <= mesh_.slots() / 4) return;
+    mesh_.renumber(morton_order(mesh_));
+    evolution_.restart();
+  }
+
+  // An estimate: levels cost about 3 times their predecessor, and within a level the energy falls
+  // exponentially to epsilon.
+  RecoveryProgress progress(int h, const LevelRecord& record, double first_energy) {
+    double before = 0;
+    double all = 0;
+    for (int l = levels_; l >= 0; --l) {
+      const double cost = std::pow(kRefinement, 2 * (levels_ - l));
+      all += cost;
+      if (l > h) before += cost;
+    }
+    const double own = std::pow(kRefinement, 2 * (levels_ - h));
+    const double fallen = std::log(first_energy / std::max(record.energy, 1e-30)) /
+                          std::max(1e-9, std::log(first_energy / spec_.epsilon));
+    const double estimate = (before + own * std::clamp(fallen, 0.0, 1.0)) / all;
+    fraction_ = std::max(fraction_, std::min(estimate, 1.0));
+    return {h, levels_, static_cast<int>(record.iterations), mesh_.vertex_count(), record.energy,
+            fraction_};
+  }
+
+  const Pyramid& pyramid_;
+  const RecoverySpec& spec_;
+  const Schedule& schedule_;
+  const RecoveryProgressFn& progress_;
+  Mesh& mesh_;
+  Evolution evolution_;
+  int levels_;
+  double fraction_ = 0;
+};
+
+}  // namespace
+
+// Voxel i of the unpadded I_0 is voxel i + pad of the padded one and lies at (i + pad + 1/2) of its
+// voxels from the border: (10).
+ImageView image_view(const Pyramid& pyramid, int h, const RecoverySpec& spec) {
+  const PyramidLevel& level = pyramid.levels[static_cast<size_t>(h)];
+  ImageView view;
+  view.data = level.values.data();
+  for (size_t a = 0; a < 3; ++a) {
+    const double voxels_per_voxel = pyramid.levels[0].voxel[a] / level.voxel[a];
+    view.dims[a] = static_cast<int32_t>(level.dims[a]);
+    view.scale[a] = static_cast<float>(voxels_per_voxel / spec.space.step[a]);
+    view.offset[a] = static_cast<float>((spec.pad_voxels + 0.5) * voxels_per_voxel - 0.5);
+  }
+  return view;
+}
+
+Status pyramidal_recover_shape(const Pyramid& pyramid, const RecoverySpec& spec,
+                               const Schedule& schedule, SimdTarget simd,
+                               const RecoveryProgressFn& progress, Mesh& mesh,
+                               std::vector<LevelRecord>& records) {
+  Recovery recovery(pyramid, spec, schedule, simd, progress, mesh);
+  return recovery.run(records);
+}
+
+}  // namespace plc

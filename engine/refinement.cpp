@@ -1,0 +1,147 @@
+#include "engine/refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/constants.h"
+#include "engine/edge.h"
+#include "engine/inversion.h"
+#include "engine/self_meeting.h"
+
+namespace plc {
+
+namespace {
+
+// Spreads the low 21 bits of x to every third bit.
+uint64_t spread(uint64_t x) {
+  x &= 0x1FFFFF;
+  x = (x | x << 32) & 0x1F00000000FFFFULL;
+  x = (x | x << 16) & 0x1F0000FF0000FFULL;
+  x = (x | x << 8) & 0x100F00F00F00F00FULL;
+  x = (x | x << 4) & 0x10C30C30C30C30C3ULL;
+  return (x | x << 2) & 0x1249249249249249ULL;
+}
+
+uint64_t morton_key(Vec3 p, double delta) {
+  const auto cell = [&](float x) {
+    constexpr double kMiddle = 1 << 20;
+    return static_cast<uint64_t>(std::clamp(std::floor(x / delta) + kMiddle, 0.0, 2 * kMiddle - 1));
+  };
+  return spread(cell(p.x)) | spread(cell(p.y)) << 1 | spread(cell(p.z)) << 2;
+}
+
+// Slot k of v stands for the face (v, slot k, slot k + 1). face_of[first[v] + k] is the vertex that
+// was created in it.
+struct FaceVertices {
+  std::vector<uint32_t> first;
+  std::vector<uint32_t> of_slot;
+};
+
+// The vertex of the face (u, w, x) where w is a neighbour of u and x follows it.
+uint32_t vertex_of(const Mesh& mesh, const FaceVertices& faces, uint32_t u, uint32_t w) {
+  uint32_t k = 0;
+  while (mesh.neighbor(u, k) != w) ++k;
+  return faces.of_slot[faces.first[u] + k];
+}
+
+FaceVertices create_face_vertices(Mesh& mesh, uint32_t old_slots) {
+  FaceVertices faces;
+  faces.first.resize(old_slots);
+  uint32_t total = 0;
+  for (uint32_t v = 0; v < old_slots; ++v) {
+    faces.first[v] = total;
+    total += mesh.valence(v);
+  }
+  faces.of_slot.resize(total);
+  for (uint32_t v = 0; v < old_slots; ++v) {
+    const uint32_t d = mesh.valence(v);
+    for (uint32_t k = 0; k < d; ++k) {
+      const uint32_t a = mesh.neighbor(v, k);
+      const uint32_t b = mesh.neighbor(v, k + 1 == d ? 0 : k + 1);
+      if (a < v || b < v) continue;
+      const Vec3 centre = (mesh.at(v) + mesh.at(a) + mesh.at(b)) * (1.0F / 3.0F);
+      const Vec3 speed =
+          (mesh.velocity.at(v) + mesh.velocity.at(a) + mesh.velocity.at(b)) * (1.0F / 3.0F);
+      const uint32_t c = mesh.create(centre, speed);
+      faces.of_slot[faces.first[v] + k] = c;
+      const std::array<std::pair<uint32_t, uint32_t>, 2> others{{{a, b}, {b, v}}};
+      for (const auto& [x, y] : others) {
+        uint32_t j = 0;
+        while (mesh.neighbor(x, j) != y) ++j;
+        faces.of_slot[faces.first[x] + j] = c;
+      }
+    }
+  }
+  return faces;
+}
+
+// The old edges come back where the inverted ones make the surface meet itself: the faces of before
+// did not. Each round gives back the edges of all faces that meet; with all given back none is left.
+void undo_where_meeting(Mesh& mesh, uint32_t old_slots, const Executor& executor) {
+  for (;;) {
+    const auto meeting = meeting_faces(mesh, executor);
+    bool undone = false;
+    for (const auto& face : meeting) {
+      for (uint32_t i = 0; i < 3; ++i) {
+        const uint32_t c = face[i];
+        const uint32_t d = face[(i + 1) % 3];
+        if (c < old_slots || d < old_slots || !mesh.alive(c) || !mesh.adjacent(c, d)) continue;
+        invert_edge(mesh, edge_between(mesh, c, d));
+        undone = true;
+      }
+    }
+    if (!undone) return;
+  }
+}
+
+}  // namespace
+
+std::vector<uint32_t> morton_order(const Mesh& mesh) {
+  std::vector<std::pair<uint64_t, uint32_t>> keys;
+  keys.reserve(mesh.vertex_count());
+  for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    if (mesh.alive(v)) keys.emplace_back(morton_key(mesh.at(v), mesh.delta), v);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<uint32_t> order;
+  order.reserve(keys.size());
+  for (const auto& key : keys) order.push_back(key.second);
+  return order;
+}
+
+void refine(Mesh& mesh, const Executor& executor) {
+  // Old vertices get the low ids, without gaps, so that new and old are told apart by id.
+  mesh.renumber(morton_order(mesh));
+  const uint32_t old_slots = mesh.slots();
+  mesh.reserve(old_slots * 3);
+  const FaceVertices faces = create_face_vertices(mesh, old_slots);
+  // The vertex of a face (v, a, b) gets its three corners and the vertices of the faces across the
+  // edges; an old vertex gets the vertices of its faces.
+  for (uint32_t v = 0; v < old_slots; ++v) {
+    const uint32_t d = mesh.valence(v);
+    for (uint32_t k = 0; k < d; ++k) {
+      const uint32_t a = mesh.neighbor(v, k);
+      const uint32_t b = mesh.neighbor(v, k + 1 == d ? 0 : k + 1);
+      if (a < v || b < v) continue;
+      Neighbors ring;
+      // Across v-a lies the face (a, v, x): v follows a in it, seen from a.
+      for (const auto& [x, y] : {std::pair{v, a}, std::pair{a, b}, std::pair{b, v}}) {
+        ring.push_back(x);
+        ring.push_back(vertex_of(mesh, faces, y, x));
+      }
+      mesh.set_ring(faces.of_slot[faces.first[v] + k], ring);
+    }
+  }
+  for (uint32_t v = 0; v < old_slots; ++v) {
+    Neighbors ring;
+    for (uint32_t k = 0; k < mesh.valence(v); ++k) ring.push_back(faces.of_slot[faces.first[v] + k]);
+    mesh.set_ring(v, ring);
+  }
+  mesh.delta /= kRefinement;
+  undo_where_meeting(mesh, old_slots, executor);
+  mesh.renumber(morton_order(mesh));
+  for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.wake(v);
+}
+
+}  // namespace plc

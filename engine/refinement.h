@@ -1,0 +1,17 @@
+// Global refinement (3.4): edges shrink to 1 / sqrt 3, three times the vertices.
+#pragma once
+#include "engine/mesh.h"
+#include "pyramid/executor.h"
+
+namespace plc {
+
+// A vertex at the centre of each face, then every old edge inverted, except where the inverted faces
+// would meet the surface elsewhere. Valid on any mesh of ours: its graph is simple, so no two faces
+// share two edges. delta is divided by sqrt 3, ids are renumbered along a Morton curve, every vertex
+// is due for a check.
+void refine(Mesh& mesh, const Executor& executor);
+
+// The living vertices along a Morton curve of cells of delta, ties by id.
+std::vector<uint32_t> morton_order(const Mesh& mesh);
+
+}  // namespace plc

@@ -1,0 +1,329 @@
+#include "engine/resolution.h"
+
+#include <algorithm>
+
+#include "engine/annular.h"
+#include "engine/axial.h"
+#include "engine/constants.h"
+#include "engine/creation.h"
+#include "engine/deletion.h"
+#include "engine/edge_constraints.h"
+#include "engine/embedding_guard.h"
+#include "engine/inversion.h"
+#include "engine/proximity.h"
+#include "kernels/ring_forces.h"
+
+namespace plc {
+
+namespace {
+
+constexpr size_t kChunk = 128;  // queue entries per task
+
+// Runs collect(chunk of the queue, out) over chunks and joins the results in order.
+template <typename Collect>
+std::vector<Candidate> collect_in_order(const Executor& executor,
+                                        const std::vector<uint32_t>& queue, Collect&& collect) {
+  const size_t chunks = (queue.size() + kChunk - 1) / kChunk;
+  std::vector<std::vector<Candidate>> found(chunks);
+  executor.run(chunks, [&](size_t chunk) {
+    const size_t end = std::min((chunk + 1) * kChunk, queue.size());
+    for (size_t i = chunk * kChunk; i < end; ++i) collect(queue[i], found[chunk]);
+  });
+  std::vector<Candidate> all;
+  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+}  // namespace
+
+Resolution::Resolution(Mesh& mesh, const Executor& executor, SimdTarget simd)
+    : mesh_(mesh), executor_(executor), simd_(simd) {}
+
+void Resolution::restart() {
+  stamp_.clear();
+  claim_.clear();
+  stamp_count_ = round_ = 0;
+  tiny_.start(mesh_);
+}
+
+void Resolution::run(uint32_t iteration, bool check_all, OperationCounts& counts) {
+  iteration_ = iteration;
+  changed_.clear();
+  stamp_.resize(mesh_.slots(), 0);
+  claim_.resize(mesh_.slots(), 0);
+  take_due(check_all);
+  hash_.build(mesh_, kMinApart * static_cast<float>(mesh_.delta), executor_);
+  for (int pass = 0; pass < kMaxAxialPasses; ++pass) {
+    resolve_edges(counts);
+    if (!resolve_pairs(counts)) break;
+  }
+  // What the limits left over is checked again in the next iteration.
+  for (const auto* queue : {&edge_queue_, &pair_queue_}) {
+    for (const uint32_t v : *queue) {
+      if (mesh_.alive(v)) mesh_.wake(v);
+    }
+    counts.deferred += static_cast<int64_t>(queue->size());
+  }
+  counts.tetrahedron += tiny_.update(mesh_, changed_);
+}
+
+// The slow-vertex heuristic (3.6).
+void Resolution::take_due(bool check_all) {
+  edge_queue_.clear();
+  pair_queue_.clear();
+  const float far = kCheckPath * static_cast<float>(mesh_.delta);
+  for (uint32_t v = 0; v < mesh_.slots(); ++v) {
+    if (!mesh_.alive(v)) continue;
+    mesh_.operations[v] = 0;
+    if (!check_all && mesh_.path[v] < far && mesh_.idle[v] < kCheckPeriod) {
+      ++mesh_.idle[v];
+      continue;
+    }
+    mesh_.path[v] = 0;
+    mesh_.idle[v] = 0;
+    pair_queue_.push_back(v);
+  }
+  const auto delta = static_cast<float>(mesh_.delta);
+  flags_.resize_uninitialized(mesh_.padded());
+  const uint32_t n = mesh_.padded();
+  executor_.run((n + kGrain - 1) / kGrain, [&](size_t block) {
+    const auto begin = static_cast<uint32_t>(block) * kGrain;
+    kernels::edge_violations(simd_, mesh_.rings(), mesh_.packed.data(), delta * delta,
+                             kMaxEdge * kMaxEdge * delta * delta, begin,
+                             std::min(begin + kGrain, n), flags_.data());
+  });
+  for (const uint32_t v : pair_queue_) {
+    if (flags_[v] != 0) edge_queue_.push_back(v);
+  }
+}
+
+uint32_t Resolution::stamp_queue(const std::vector<uint32_t>& queue) {
+  ++stamp_count_;
+  for (const uint32_t v : queue) stamp_[v] = stamp_count_;
+  return stamp_count_;
+}
+
+void Resolution::unique(std::vector<uint32_t>& queue) {
+  std::sort(queue.begin(), queue.end());
+  queue.erase(std::unique(queue.begin(), queue.end()), queue.end());
+  std::erase_if(queue, [&](uint32_t v) { return !mesh_.alive(v); });
+  stamp_.resize(mesh_.slots(), 0);
+  claim_.resize(mesh_.slots(), 0);
+}
+
+void Resolution::resolve_edges(OperationCounts& counts) {
+  for (int round = 0; round < kMaxRounds; ++round) {
+    unique(edge_queue_);
+    if (edge_queue_.empty()) return;
+    const std::vector<Candidate> candidates = edge_candidates(edge_queue_);
+    edge_queue_.clear();
+    apply_round(candidates, edge_queue_, counts);
+  }
+}
+
+std::vector<Candidate> Resolution::edge_candidates(const std::vector<uint32_t>& queue) {
+  const uint32_t stamp = stamp_queue(queue);
+  return collect_in_order(executor_, queue, [&](uint32_t u, std::vector<Candidate>& out) {
+    const uint32_t d = mesh_.valence(u);
+    for (uint32_t k = 0; k < d; ++k) {
+      const uint32_t v = mesh_.neighbor(u, k);
+      if (v < u && stamp_[v] == stamp) continue;  // the edge comes from v
+      uint32_t from = u;
+      uint32_t slot = k;
+      if (v < u) {
+        from = v;
+        slot = 0;
+        while (mesh_.neighbor(v, slot) != u) ++slot;
+      }
+      if (const auto candidate = edge_candidate(mesh_, from, slot)) out.push_back(*candidate);
+    }
+  });
+}
+
+// One pass over (3); false when nothing was left to do.
+bool Resolution::resolve_pairs(OperationCounts& counts) {
+  unique(pair_queue_);
+  if (pair_queue_.empty()) return false;
+  const std::vector<Candidate> candidates = pair_candidates(pair_queue_);
+  pair_queue_.clear();
+  if (candidates.empty()) return false;
+  std::vector<uint32_t> later;
+  apply_round(candidates, later, counts);
+  pair_queue_.insert(pair_queue_.end(), later.begin(), later.end());
+  return true;
+}
+
+std::vector<Candidate> Resolution::pair_candidates(const std::vector<uint32_t>& queue) {
+  const uint32_t stamp = stamp_queue(queue);
+  auto all = collect_in_order(executor_, queue, [&](uint32_t u, std::vector<Candidate>& out) {
+    proximity_candidates(mesh_, hash_, u, stamp_, stamp, iteration_, out);
+  });
+  // Nearest first whatever they ask for; a pair may have been found twice.
+  const auto nearer = [](const Candidate& l, const Candidate& r) {
+    return std::tie(l.key, l.edge.u, l.edge.v, l.operation, l.edge.a) <
+           std::tie(r.key, r.edge.u, r.edge.v, r.operation, r.edge.a);
+  };
+  std::sort(all.begin(), all.end(), nearer);
+  const auto same = [](const Candidate& l, const Candidate& r) {
+    return l.operation == r.operation && l.edge.u == r.edge.u && l.edge.v == r.edge.v;
+  };
+  all.erase(std::unique(all.begin(), all.end(), same), all.end());
+  return all;
+}
+
+void Resolution::apply_round(const std::vector<Candidate>& candidates,
+                             std::vector<uint32_t>& later, OperationCounts& counts) {
+  ++round_;
+  for (const Candidate& candidate : candidates) {
+    if (!claim(candidate)) {
+      later.push_back(candidate.edge.u);
+      later.push_back(candidate.edge.v);
+    } else if (!within_limit(candidate)) {
+      ++counts.deferred;
+    } else {
+      apply(candidate, counts);
+    }
+  }
+}
+
+// Claims the closed rings of the vertices that the candidate changes or was found from.
+bool Resolution::claim(const Candidate& candidate) {
+  const Edge& e = candidate.edge;
+  uint32_t corners[4] = {e.u, e.v, e.u, e.u};
+  if (candidate.operation == Operation::kAnnular) corners[2] = e.a;
+  if (candidate.operation == Operation::kInversion) {
+    corners[2] = e.a;
+    corners[3] = e.b;
+  }
+  // What an earlier candidate of the round created is claimed, too.
+  const auto free = [&](uint32_t v) { return v < claim_.size() && claim_[v] != round_; };
+  for (const uint32_t c : corners) {
+    if (!free(c) || !mesh_.alive(c)) return false;
+    const uint32_t d = mesh_.valence(c);
+    for (uint32_t k = 0; k < d; ++k) {
+      if (!free(mesh_.neighbor(c, k))) return false;
+    }
+  }
+  for (const uint32_t c : corners) {
+    claim_[c] = round_;
+    const uint32_t d = mesh_.valence(c);
+    for (uint32_t k = 0; k < d; ++k) claim_[mesh_.neighbor(c, k)] = round_;
+  }
+  return true;
+}
+
+// Where an operation is put off the vertices stay due, so that the next iteration sees it again.
+bool Resolution::within_limit(const Candidate& candidate) {
+  const Edge& e = candidate.edge;
+  const auto busiest = std::max(mesh_.operations[e.u], mesh_.operations[e.v]);
+  if (busiest >= kMaxOperationsPerVertex) {
+    mesh_.wake(e.u);
+    mesh_.wake(e.v);
+    return false;
+  }
+  mesh_.operations[e.u] = mesh_.operations[e.v] = static_cast<uint8_t>(busiest + 1);
+  return true;
+}
+
+void Resolution::apply(const Candidate& candidate, OperationCounts& counts) {
+  bool done = true;
+  switch (candidate.operation) {
+    case Operation::kCreation:
+      apply_creation(candidate);
+      ++counts.creation;
+      break;
+    case Operation::kInversion:
+      done = apply_inversion(candidate);
+      counts.inversion += done ? 1 : 0;
+      // A long edge that may not be inverted is split.
+      if (!done && candidate.key < 0) {
+        apply_creation(candidate);
+        ++counts.creation;
+        done = true;
+      }
+      break;
+    case Operation::kDeletion:
+      done = apply_deletion(candidate, counts);
+      break;
+    case Operation::kAnnular:
+      done = apply_annular(candidate);
+      counts.annular += done ? 1 : 0;
+      break;
+    case Operation::kAxial:
+      done = apply_axial(candidate);
+      counts.axial += done ? 1 : 0;
+      break;
+  }
+  if (!done) {
+    ++counts.refused;
+    for (const uint32_t v : {candidate.edge.u, candidate.edge.v}) {
+      if (mesh_.alive(v)) mesh_.wake(v);
+    }
+  }
+}
+
+void Resolution::involve(uint32_t v) {
+  edge_queue_.push_back(v);
+  pair_queue_.push_back(v);
+}
+
+void Resolution::moved(uint32_t v) {
+  hash_.insert(v, mesh_.at(v));
+  involve(v);
+}
+
+void Resolution::apply_creation(const Candidate& candidate) {
+  moved(create_on_edge(mesh_, candidate.edge));
+}
+
+bool Resolution::apply_inversion(const Candidate& candidate) {
+  const Edge& e = candidate.edge;
+  if (!embeds(mesh_, hash_, propose_inversion(mesh_, e))) return false;
+  invert_edge(mesh_, e);
+  for (const uint32_t v : {e.u, e.v, e.a, e.b}) involve(v);
+  return true;
+}
+
+bool Resolution::apply_deletion(const Candidate& candidate, OperationCounts& counts) {
+  const Edge& e = candidate.edge;
+  if (mesh_.valence(e.a) == 3 || mesh_.valence(e.b) == 3) {
+    // Exactly two common neighbours and an apex of valence 3: the component is a tetrahedron.
+    delete_tetrahedron(mesh_, mesh_.valence(e.a) == 3 ? e.a : e.b);
+    ++counts.tetrahedron;
+    return true;
+  }
+  for (const Vec3 place : {midpoint(mesh_.at(e.u), mesh_.at(e.v)), mesh_.at(e.u), mesh_.at(e.v)}) {
+    if (!embeds(mesh_, hash_, propose_deletion(mesh_, e, place))) continue;
+    delete_edge(mesh_, e, place);
+    moved(e.u);
+    changed_.push_back(e.u);
+    ++counts.deletion;
+    return true;
+  }
+  return false;
+}
+
+bool Resolution::apply_annular(const Candidate& candidate) {
+  const Edge& e = candidate.edge;
+  const Cycle cycle{{e.u, e.v, e.a}};
+  const auto copies = annular_copies(mesh_, cycle, kAnnularRetreat);
+  if (!embeds(mesh_, hash_, propose_annular(mesh_, cycle, copies))) return false;
+  const auto right = cut_cycle(mesh_, cycle, copies, next_cut_++, iteration_);
+  for (uint32_t i = 0; i < 3; ++i) {
+    for (const uint32_t v : {cycle.corner[i], right[i]}) {
+      moved(v);
+      changed_.push_back(v);
+    }
+  }
+  return true;
+}
+
+bool Resolution::apply_axial(const Candidate& candidate) {
+  const AxialPlan plan = plan_axial(mesh_, candidate.edge.u, candidate.edge.v);
+  if (!embeds(mesh_, hash_, propose_axial(mesh_, plan))) return false;
+  for (const uint32_t v : join(mesh_, plan)) moved(v);
+  return true;
+}
+
+}  // namespace plc

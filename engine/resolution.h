@@ -1,0 +1,72 @@
+// Detection and resolution of the three constraints: the loop of figure 9, in deterministic rounds.
+#pragma once
+#include <vector>
+
+#include "engine/candidate.h"
+#include "engine/mesh.h"
+#include "engine/spatial_hash.h"
+#include "engine/statistics.h"
+#include "engine/tiny_components.h"
+#include "kernels/simd.h"
+#include "pyramid/executor.h"
+
+namespace plc {
+
+// One round: collect candidates (parallel, reading only), order them by a total key, and go through
+// them in that order: a candidate whose footprint - the closed rings of its vertices - an earlier
+// one of the round has claimed is put off to the next round, the others are applied. Nothing
+// depends on threads or addresses.
+class Resolution {
+ public:
+  Resolution(Mesh& mesh, const Executor& executor, SimdTarget simd);
+
+  // Everything that is known about single vertices is forgotten: new ids, new level.
+  void restart();
+  // One pass of figure 9 over the vertices that are due for a check (all of them: check_all).
+  void run(uint32_t iteration, bool check_all, OperationCounts& counts);
+
+  // The hash as of the last run; holds every living vertex.
+  const SpatialHash& hash() const { return hash_; }
+
+ private:
+  void take_due(bool check_all);
+  void resolve_edges(OperationCounts& counts);
+  bool resolve_pairs(OperationCounts& counts);
+  std::vector<Candidate> edge_candidates(const std::vector<uint32_t>& queue);
+  std::vector<Candidate> pair_candidates(const std::vector<uint32_t>& queue);
+  // Applies what does not conflict; the vertices of what does are appended to `later`.
+  void apply_round(const std::vector<Candidate>& candidates, std::vector<uint32_t>& later,
+                   OperationCounts& counts);
+  bool claim(const Candidate& candidate);
+  bool within_limit(const Candidate& candidate);
+  void apply(const Candidate& candidate, OperationCounts& counts);
+  bool apply_inversion(const Candidate& candidate);
+  bool apply_deletion(const Candidate& candidate, OperationCounts& counts);
+  bool apply_annular(const Candidate& candidate);
+  bool apply_axial(const Candidate& candidate);
+  void apply_creation(const Candidate& candidate);
+  // v has changed: its constraints are checked again in this pass.
+  void involve(uint32_t v);
+  void moved(uint32_t v);
+  uint32_t stamp_queue(const std::vector<uint32_t>& queue);
+  void unique(std::vector<uint32_t>& queue);
+
+  Mesh& mesh_;
+  const Executor& executor_;
+  SimdTarget simd_;
+  SpatialHash hash_;
+  TinyComponents tiny_;
+  uint32_t iteration_ = 0;
+  uint32_t next_cut_ = 1;
+
+  Buffer<uint8_t> flags_;            // edge violations by the kernel
+  std::vector<uint32_t> edge_queue_; // vertices whose edges are to be checked
+  std::vector<uint32_t> pair_queue_; // ... whose distance to non-neighbours is to be checked
+  std::vector<uint32_t> changed_;    // where components may have become tiny
+  std::vector<uint32_t> stamp_;      // by vertex: the queue it is in
+  std::vector<uint32_t> claim_;      // by vertex: the round that claimed it
+  uint32_t stamp_count_ = 0;
+  uint32_t round_ = 0;
+};
+
+}  // namespace plc

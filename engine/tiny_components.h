@@ -1,0 +1,39 @@
+// Deletion of tetrahedra and of tiny components that turn inside out (3.3).
+#pragma once
+#include <vector>
+
+#include "engine/mesh.h"
+
+namespace plc {
+
+// v and its neighbours are a whole component of four vertices.
+bool is_tetrahedron(const Mesh& mesh, uint32_t v);
+void delete_tetrahedron(Mesh& mesh, uint32_t v);
+
+// Follows the components of up to kTinyComponent vertices. A flat tetrahedron, or a small bubble
+// between two fronts, inverts without violating (1)-(3) and would stay for ever.
+class TinyComponents {
+ public:
+  // Looks at every vertex: at the start of a level.
+  void start(Mesh& mesh);
+  // Looks at the components followed so far and at those of `changed`; deletes what has turned over
+  // or nearly vanished. Returns how many were deleted.
+  int64_t update(Mesh& mesh, const std::vector<uint32_t>& changed);
+  // Forgets all: ids have changed.
+  void clear() { watched_.clear(); }
+
+ private:
+  struct Watched {
+    uint32_t vertex;  // the smallest id of the component
+    bool positive;    // sign of the volume when it was first seen
+  };
+  // The component of v, when it has at most kTinyComponent vertices; else empty.
+  const std::vector<uint32_t>& flood(const Mesh& mesh, uint32_t v);
+
+  std::vector<Watched> watched_;
+  std::vector<uint32_t> seen_;  // by vertex: epoch_ when already looked at in this update
+  std::vector<uint32_t> component_;
+  uint32_t epoch_ = 0;
+};
+
+}  // namespace plc
