@@ -14,18 +14,18 @@ namespace plc {
 
 // One image I_h, values in [0,1], x fastest.
 struct PyramidLevel {
-  std::array<int64_t, 3> dims{0, 0, 0};   // M_h, N_h, P_h (11)
-  std::array<double, 3> voxel{0, 0, 0};   // mu/M_h, nu/N_h, pi/P_h, mm
-  double unit = 0;                        // U_h = rho^h U_0 (11), mm
+  std::array<int64_t, 3> dims{0, 0, 0};  // M_h, N_h, P_h (11)
+  std::array<double, 3> voxel{0, 0, 0};  // mu/M_h, nu/N_h, pi/P_h, mm
+  double unit = 0;                       // U_h = rho^h U_0 (11), mm
   Buffer<float> values;
 };
 
 struct PyramidSpec {
-  double reduction = 1.7320508075688772;  // rho, 1 < rho <= 2
-  int levels = 3;                         // levels above I_0, >= 0
-  double window_low = 0, window_high = 1; // mapped to 0 and 1, clipped; low < high
-  double pad_value = 0;                   // in the image's units
-  int pad_voxels = 6;                     // added on every side of I_0
+  double reduction = 1.7320508075688772;   // rho, 1 < rho <= 2
+  int levels = 3;                          // levels above I_0, >= 0
+  double window_low = 0, window_high = 1;  // mapped to 0 and 1, clipped; low < high
+  double pad_value = 0;                    // in the image's units
+  int pad_voxels = 6;                      // added on every side of I_0
 };
 
 struct Pyramid {
@@ -35,7 +35,7 @@ struct Pyramid {
 // The smallest and largest voxel and whether all are finite; every voxel is read once.
 struct VoxelRange {
   double low = 0, high = 0;
-  int64_t not_finite = 0;    // number of NaN or infinite voxels
+  int64_t not_finite = 0;  // number of NaN or infinite voxels
 };
 VoxelRange voxel_range(const VolumeView& volume, const Executor& executor, SimdTarget simd);
 
@@ -50,8 +50,8 @@ Status build_pyramid(const VolumeView& volume, const PyramidSpec& spec, const Ex
                      SimdTarget simd, Pyramid& pyramid);
 
 // The iso value of each level at which the part of the image at or above it (inside_above) or at or
-// below it has the volume that it has on I_0 at iso_0, both in [0,1]; result[0] == iso_0. What fades
-// on a coarse level keeps its volume this way. Kept within (0,1).
+// below it has the volume that it has on I_0 at iso_0, both in [0,1]; result[0] == iso_0. What
+// fades on a coarse level keeps its volume this way. Kept within (0,1).
 std::vector<double> volume_preserving_isos(const Pyramid& pyramid, double iso_0, bool inside_above);
 
 }  // namespace plc

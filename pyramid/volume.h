@@ -3,16 +3,16 @@
 #include <array>
 #include <cstdint>
 
-namespace plc {
+#include "kernels/voxels.h"  // VoxelType: kU8, kI16, kU16, kI32, kF32
 
-enum class VoxelType : uint8_t { kU8, kI16, kU16, kI32, kF32 };
+namespace plc {
 
 // Borrowed, never changed; the owner keeps `voxels` alive as long as the view is used.
 struct VolumeView {
   VoxelType type = VoxelType::kU8;
-  const void* voxels = nullptr;              // x fastest, no gaps
-  std::array<int64_t, 3> dims{0, 0, 0};      // M, N, P
-  std::array<double, 3> spacing{1, 1, 1};    // mm, > 0
+  const void* voxels = nullptr;            // x fastest, no gaps, aligned as its type
+  std::array<int64_t, 3> dims{0, 0, 0};    // M, N, P
+  std::array<double, 3> spacing{1, 1, 1};  // mm, > 0
 };
 
 }  // namespace plc

@@ -1,0 +1,51 @@
+// Which compiled target of a kernel a SimdTarget means. For the kernels' own .cpp files, after
+// hwy/foreach_target.h; nothing else includes it.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "hwy/highway.h"
+#include "kernels/simd.h"
+
+namespace plc::kernels {
+
+// The targets a kernel may use when `simd` is asked for: that one and, where it was not compiled,
+// worse ones.
+inline int64_t simd_target_mask(SimdTarget simd) {
+  int64_t targets = 0;
+#if HWY_ARCH_X86
+  switch (simd) {
+    case SimdTarget::kAvx512:
+      targets |= HWY_AVX3;
+      [[fallthrough]];
+    case SimdTarget::kAvx2:
+      targets |= HWY_AVX2;
+      [[fallthrough]];
+    case SimdTarget::kSse4:
+      targets |= HWY_SSE4;
+      [[fallthrough]];
+    case SimdTarget::kScalar:
+      break;
+  }
+#else
+  (void)simd;
+#endif
+  return targets;
+}
+
+// Index of `simd` in the tables of HWY_EXPORT. The choice is local: Highway's own, which is a
+// global of the process, is left alone.
+inline size_t dispatch_index(SimdTarget simd) {
+  if constexpr ((HWY_TARGETS & (HWY_TARGETS - 1)) == 0) return 0;
+  hwy::ChosenTarget chosen;
+  chosen.Update(simd_target_mask(simd));
+  return chosen.GetIndex();
+}
+
+}  // namespace plc::kernels
+
+// The function to call: the scalar twin, or the entry of the table that HWY_EXPORT(function) made.
+#define PLC_DISPATCH(simd, function)     \
+  ((simd) == plc::SimdTarget::kScalar    \
+       ? &plc::kernels::scalar::function \
+       : HWY_DISPATCH_TABLE(function)[plc::kernels::dispatch_index(simd)])

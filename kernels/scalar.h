@@ -1,0 +1,74 @@
+// The scalar twin of every kernel: the same operations in the same order, one value at a time.
+// They are what SimdTarget::kScalar runs, what the tests compare with, and the contract of bits in
+// readable form; the kernels' headers say what each function does.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "kernels/image.h"
+#include "kernels/integrate.h"
+#include "kernels/ring.h"
+#include "kernels/separable.h"
+#include "kernels/voxels.h"
+
+namespace plc::kernels::scalar {
+
+struct Triple {
+  float x = 0, y = 0, z = 0;
+};
+
+// Sums over the ring of one vertex, from slot 0 up. The vector kernels call them for vertices of
+// valence > kRingSlots, which are too rare to be worth vectors.
+Triple difference_sum(const RingView& ring, const Packed* position, uint32_t v);  // y - x
+Triple record_sum(const RingView& ring, const Packed* record, uint32_t v);
+Triple spring_sum(const RingView& ring, const Packed* position, float rest_length, uint32_t v);
+Triple normal_sum(const RingView& ring, const Packed* position, uint32_t v);  // cross products
+uint8_t violation_flags(const RingView& ring, const Packed* position, float min_squared,
+                        float max_squared, uint32_t v);
+float length_sum(const RingView& ring, const Packed* position, uint32_t v);
+
+// ring_forces.h
+void laplacian(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end,
+               Packed* laplacian);
+void curvature_force(const RingView& ring, const Packed* laplacian, float alpha_c, uint32_t begin,
+                     uint32_t end, float* fx, float* fy, float* fz);
+void spring_force(const RingView& ring, const Packed* position, float alpha_e, float rest_length,
+                  uint32_t begin, uint32_t end, float* fx, float* fy, float* fz);
+void normals(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end, float* nx,
+             float* ny, float* nz);
+void edge_violations(const RingView& ring, const Packed* position, float min_squared,
+                     float max_squared, uint32_t begin, uint32_t end, uint8_t* flags);
+double edge_length_sum(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end);
+
+// image_force.h
+void sample_trilinear(const ImageView& image, const Packed* position, uint32_t begin, uint32_t end,
+                      float* values);
+void iso_force(const ImageView& image, const Packed* position, const float* nx, const float* ny,
+               const float* nz, float coefficient, float iso, uint32_t begin, uint32_t end,
+               float* fx, float* fy, float* fz);
+
+// integrate.h
+void rk4_stage(int stage, const Rk4Coefficients& coefficients, const Rk4Streams& streams,
+               uint32_t begin, uint32_t end);
+float max_squared(const float* dx, const float* dy, const float* dz, uint32_t begin, uint32_t end);
+void clamp_movement(float max_length, float max_speed, float* dx, float* dy, float* dz, float* vx,
+                    float* vy, float* vz, uint32_t begin, uint32_t end);
+void move(const float* dx, const float* dy, const float* dz, float* px, float* py, float* pz,
+          Packed* packed, float* path, uint32_t begin, uint32_t end);
+double normal_energy_sum(const float* dx, const float* dy, const float* dz, const float* nx,
+                         const float* ny, const float* nz, uint32_t begin, uint32_t end);
+
+// voxels.h
+void normalize_voxels(VoxelType type, const void* voxels, size_t count, double low, double scale,
+                      float* values);
+VoxelExtent voxel_extent(VoxelType type, const void* voxels, size_t count);
+
+// separable.h
+void reduce_x(const TapsView& taps, size_t outputs, const float* in, size_t width, size_t in_stride,
+              size_t rows, float* out, size_t out_stride, float* scratch);
+void reduce_y(const TapsView& taps, size_t begin, size_t end, const float* in, size_t in_stride,
+              size_t width, float* out, size_t out_stride);
+void reduce_z(const float* weights, int32_t taps, const float* const* planes, size_t count,
+              float* out);
+
+}  // namespace plc::kernels::scalar

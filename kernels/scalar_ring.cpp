@@ -1,0 +1,154 @@
+// Scalar twins of kernels/ring_forces.h.
+#include <cmath>
+
+#include "kernels/lane_sum.h"
+#include "kernels/scalar.h"
+
+namespace plc::kernels::scalar {
+
+namespace {
+
+Triple difference(const Packed& to, const Packed& from) {
+  return {to.x - from.x, to.y - from.y, to.z - from.z};
+}
+Triple cross(const Triple& a, const Triple& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+float squared(const Triple& a) {
+  return a.x * a.x + a.y * a.y + a.z * a.z;
+}
+
+void add(Triple& sum, const Triple& term) {
+  sum.x += term.x;
+  sum.y += term.y;
+  sum.z += term.z;
+}
+
+// The mean is the sum times the rounded inverse: one division for three coordinates.
+float inverse_valence(const RingView& ring, uint32_t v) {
+  return ring.valence[v] == 0 ? 0.0F : 1.0F / static_cast<float>(ring.valence[v]);
+}
+
+}  // namespace
+
+Triple difference_sum(const RingView& ring, const Packed* position, uint32_t v) {
+  Triple sum;
+  for (uint32_t k = 0; k < ring.valence[v]; ++k) {
+    add(sum, difference(position[ring.slot(v, k)], position[v]));
+  }
+  return sum;
+}
+
+Triple record_sum(const RingView& ring, const Packed* record, uint32_t v) {
+  Triple sum;
+  for (uint32_t k = 0; k < ring.valence[v]; ++k) {
+    const Packed& r = record[ring.slot(v, k)];
+    add(sum, {r.x, r.y, r.z});
+  }
+  return sum;
+}
+
+Triple spring_sum(const RingView& ring, const Packed* position, float rest_length, uint32_t v) {
+  Triple sum;
+  for (uint32_t k = 0; k < ring.valence[v]; ++k) {
+    const Triple edge = difference(position[ring.slot(v, k)], position[v]);
+    const float length = std::sqrt(squared(edge));
+    const float pull = length > 0.0F ? (length - rest_length) / length : 0.0F;
+    add(sum, {pull * edge.x, pull * edge.y, pull * edge.z});
+  }
+  return sum;
+}
+
+Triple normal_sum(const RingView& ring, const Packed* position, uint32_t v) {
+  Triple sum;
+  const uint32_t valence = ring.valence[v];
+  if (valence == 0) return sum;
+  const Triple first = difference(position[ring.slot(v, 0)], position[v]);
+  Triple last = first;
+  for (uint32_t k = 1; k < valence; ++k) {
+    const Triple edge = difference(position[ring.slot(v, k)], position[v]);
+    add(sum, cross(last, edge));
+    last = edge;
+  }
+  add(sum, cross(last, first));
+  return sum;
+}
+
+uint8_t violation_flags(const RingView& ring, const Packed* position, float min_squared,
+                        float max_squared, uint32_t v) {
+  uint8_t flags = 0;
+  for (uint32_t k = 0; k < ring.valence[v]; ++k) {
+    const float length = squared(difference(position[ring.slot(v, k)], position[v]));
+    if (length <= min_squared) flags |= 1U;
+    if (length >= max_squared) flags |= 2U;
+  }
+  return flags;
+}
+
+float length_sum(const RingView& ring, const Packed* position, uint32_t v) {
+  float sum = 0;
+  for (uint32_t k = 0; k < ring.valence[v]; ++k) {
+    sum += std::sqrt(squared(difference(position[ring.slot(v, k)], position[v])));
+  }
+  return sum;
+}
+
+void laplacian(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end,
+               Packed* laplacian) {
+  for (uint32_t v = begin; v < end; ++v) {
+    const Triple sum = difference_sum(ring, position, v);
+    const float inverse = inverse_valence(ring, v);
+    laplacian[v] = {sum.x * inverse, sum.y * inverse, sum.z * inverse, 0.0F};
+  }
+}
+
+void curvature_force(const RingView& ring, const Packed* laplacian, float alpha_c, uint32_t begin,
+                     uint32_t end, float* fx, float* fy, float* fz) {
+  for (uint32_t v = begin; v < end; ++v) {
+    const Triple sum = record_sum(ring, laplacian, v);
+    const float inverse = inverse_valence(ring, v);
+    const bool alive = ring.valence[v] != 0;
+    fx[v] = alive ? (laplacian[v].x - sum.x * inverse) * alpha_c : 0.0F;
+    fy[v] = alive ? (laplacian[v].y - sum.y * inverse) * alpha_c : 0.0F;
+    fz[v] = alive ? (laplacian[v].z - sum.z * inverse) * alpha_c : 0.0F;
+  }
+}
+
+void spring_force(const RingView& ring, const Packed* position, float alpha_e, float rest_length,
+                  uint32_t begin, uint32_t end, float* fx, float* fy, float* fz) {
+  for (uint32_t v = begin; v < end; ++v) {
+    const Triple sum = spring_sum(ring, position, rest_length, v);
+    fx[v] = fx[v] + alpha_e * sum.x;
+    fy[v] = fy[v] + alpha_e * sum.y;
+    fz[v] = fz[v] + alpha_e * sum.z;
+  }
+}
+
+void normals(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end, float* nx,
+             float* ny, float* nz) {
+  for (uint32_t v = begin; v < end; ++v) {
+    const Triple sum = normal_sum(ring, position, v);
+    const float length = std::sqrt(squared(sum));
+    const float inverse = length > 0.0F ? 1.0F / length : 0.0F;
+    nx[v] = sum.x * inverse;
+    ny[v] = sum.y * inverse;
+    nz[v] = sum.z * inverse;
+  }
+}
+
+void edge_violations(const RingView& ring, const Packed* position, float min_squared,
+                     float max_squared, uint32_t begin, uint32_t end, uint8_t* flags) {
+  for (uint32_t v = begin; v < end; ++v) {
+    flags[v] = violation_flags(ring, position, min_squared, max_squared, v);
+  }
+}
+
+double edge_length_sum(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end) {
+  double lane[kRingLanes] = {};
+  for (uint32_t v = begin; v < end; ++v) {
+    lane[v % kRingLanes] += static_cast<double>(length_sum(ring, position, v));
+  }
+  return add_lanes(lane);
+}
+
+}  // namespace plc::kernels::scalar

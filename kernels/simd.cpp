@@ -1,0 +1,41 @@
+#include "kernels/simd.h"
+
+#include "kernels/dispatch.h"
+
+namespace plc {
+
+bool simd_target_available(SimdTarget target) {
+  if (target == SimdTarget::kScalar) return true;
+  const int64_t mask = kernels::simd_target_mask(target);
+  const int64_t own = mask & ~(mask - 1);  // better targets have lower bits
+  return (own & HWY_TARGETS & hwy::SupportedTargets()) != 0;
+}
+
+std::vector<SimdTarget> available_simd_targets() {
+  std::vector<SimdTarget> targets;
+  for (const SimdTarget target :
+       {SimdTarget::kScalar, SimdTarget::kSse4, SimdTarget::kAvx2, SimdTarget::kAvx512}) {
+    if (simd_target_available(target)) targets.push_back(target);
+  }
+  return targets;
+}
+
+SimdTarget best_simd_target() {
+  return available_simd_targets().back();
+}
+
+std::string_view simd_target_name(SimdTarget target) {
+  switch (target) {
+    case SimdTarget::kScalar:
+      return "scalar";
+    case SimdTarget::kSse4:
+      return "sse4";
+    case SimdTarget::kAvx2:
+      return "avx2";
+    case SimdTarget::kAvx512:
+      return "avx512";
+  }
+  return "unknown";
+}
+
+}  // namespace plc

@@ -1,0 +1,129 @@
+// What the vector kernels share: three-component vectors, and records fetched by index.
+// Included once per target, after hwy/foreach_target.h.
+#if defined(PELLICLE_KERNELS_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef PELLICLE_KERNELS_VECTORS_INL_H
+#undef PELLICLE_KERNELS_VECTORS_INL_H
+#else
+#define PELLICLE_KERNELS_VECTORS_INL_H
+#endif
+
+#include "hwy/highway.h"
+#include "kernels/ring.h"
+
+// The target without vectors, which Highway always compiles as the last resort: there the kernels
+// are their scalar twins.
+#undef PLC_SCALAR_TARGET
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
+#define PLC_SCALAR_TARGET 1
+#else
+#define PLC_SCALAR_TARGET 0
+
+HWY_BEFORE_NAMESPACE();
+namespace plc::kernels::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using FloatTag = hn::ScalableTag<float>;
+using Floats = hn::Vec<FloatTag>;
+using FloatMask = hn::Mask<FloatTag>;
+inline constexpr uint32_t kLanes = static_cast<uint32_t>(hn::MaxLanes(FloatTag()));
+static_assert(kRingLanes % kLanes == 0, "a block of vertices is a whole number of vectors");
+
+struct Floats3 {
+  Floats x, y, z;
+};
+
+// Every operation of these rounds once, in the order written; no fused multiply-add anywhere.
+HWY_INLINE Floats3 operator+(const Floats3& a, const Floats3& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Floats3 operator-(const Floats3& a, const Floats3& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Floats3 operator*(const Floats3& a, Floats s) {
+  return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
+}
+HWY_INLINE Floats dot(const Floats3& a, const Floats3& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE Floats3 cross(const Floats3& a, const Floats3& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)),
+          hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+// a where the mask is set, +0 elsewhere. Sums that start at +0 never are -0, so adding the +0 of
+// an absent term changes no bit.
+HWY_INLINE Floats3 where(FloatMask mask, const Floats3& a) {
+  return {hn::IfThenElseZero(mask, a.x), hn::IfThenElseZero(mask, a.y),
+          hn::IfThenElseZero(mask, a.z)};
+}
+HWY_INLINE Floats3 zero3() {
+  const FloatTag d;
+  return {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+}
+
+HWY_INLINE Floats3 load3(const float* x, const float* y, const float* z, uint32_t i) {
+  const FloatTag d;
+  return {hn::LoadU(d, x + i), hn::LoadU(d, y + i), hn::LoadU(d, z + i)};
+}
+HWY_INLINE void store3(const Floats3& a, float* x, float* y, float* z, uint32_t i) {
+  const FloatTag d;
+  hn::StoreU(a.x, d, x + i);
+  hn::StoreU(a.y, d, y + i);
+  hn::StoreU(a.z, d, z + i);
+}
+HWY_INLINE void store_packed(const Floats3& a, Packed* to) {
+  const FloatTag d;
+  hn::StoreInterleaved4(a.x, a.y, a.z, hn::Zero(d), d, &to->x);
+}
+
+// 16-byte block b of the result is what address(lane + 4 b) points at.
+template <class D, class Address>
+HWY_INLINE hn::Vec<D> load_blocks(D d, const Address& address, uint32_t lane) {
+  if constexpr (hn::MaxLanes(D()) == 4) {
+    return hn::LoadU(d, address(lane));
+  } else {
+    const hn::Half<D> half;
+    constexpr uint32_t kHalf = static_cast<uint32_t>(hn::MaxLanes(half));
+    return hn::Combine(d, load_blocks(half, address, lane + kHalf),
+                       load_blocks(half, address, lane));
+  }
+}
+
+// Transposes N records of four floats each: record l is what address(l) points at (any alignment),
+// field f of it goes to lane l of the result f. One load per record and shuffles inside 16-byte
+// blocks: half the cost of gathers.
+struct Floats4 {
+  Floats x, y, z, w;
+};
+template <class Address>
+HWY_INLINE Floats4 load_transposed(const Address& address) {
+  const FloatTag d;
+  const Floats a = load_blocks(d, address, 0);
+  const Floats b = load_blocks(d, address, 1);
+  const Floats c = load_blocks(d, address, 2);
+  const Floats e = load_blocks(d, address, 3);
+  const Floats ac_low = hn::InterleaveLower(d, a, c);   // a.x c.x a.y c.y
+  const Floats be_low = hn::InterleaveLower(d, b, e);   // b.x e.x b.y e.y
+  const Floats ac_high = hn::InterleaveUpper(d, a, c);  // a.z c.z a.w c.w
+  const Floats be_high = hn::InterleaveUpper(d, b, e);
+  return {hn::InterleaveLower(d, ac_low, be_low), hn::InterleaveUpper(d, ac_low, be_low),
+          hn::InterleaveLower(d, ac_high, be_high), hn::InterleaveUpper(d, ac_high, be_high)};
+}
+
+// Records index[0 .. N-1].
+HWY_INLINE Floats3 load_indexed(const Packed* record, const uint32_t* index) {
+  const Floats4 r = load_transposed([=](uint32_t l) { return &record[index[l]].x; });
+  return {r.x, r.y, r.z};
+}
+// Records at[0 .. N-1].
+HWY_INLINE Floats3 load_packed(const Packed* at) {
+  const Floats4 r = load_transposed([=](uint32_t l) { return &at[l].x; });
+  return {r.x, r.y, r.z};
+}
+
+}  // namespace plc::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // PLC_SCALAR_TARGET
+#endif  // include guard per target

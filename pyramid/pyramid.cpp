@@ -1,0 +1,187 @@
+#include "pyramid/pyramid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstddef>
+#include <cstdio>
+#include <new>
+
+#include "pyramid/base_image.h"
+#include "pyramid/reduction.h"
+#include "pyramid/taps.h"
+
+namespace plc {
+
+namespace {
+
+constexpr int64_t kMaxVoxels = int64_t{1} << 31;  // voxel indices are 32-bit in the kernels
+constexpr int64_t kMinDim = 2;                    // a cell of the interpolation needs two voxels
+
+[[gnu::format(printf, 2, 3)]] Status error(ErrorCode code, const char* format, ...) {
+  char text[256];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return {code, text};
+}
+
+using LongLong = long long;  // what %lld prints
+
+int64_t reduced(int64_t dim, double reduction) {
+  return static_cast<int64_t>(std::floor(static_cast<double>(dim) / reduction));
+}
+
+Status check_volume(const VolumeView& volume) {
+  if (volume.voxels == nullptr) {
+    return error(ErrorCode::kInvalidArgument, "volume: voxels is null, expected the image's data");
+  }
+  if (voxel_size(volume.type) == 0) {
+    return error(ErrorCode::kInvalidArgument, "volume: voxel type %d is not known",
+                 static_cast<int>(volume.type));
+  }
+  for (const int64_t dim : volume.dims) {
+    if (dim >= kMinDim && dim < kMaxVoxels) continue;
+    return error(ErrorCode::kInvalidData,
+                 "image of %lld x %lld x %lld voxels: expected at least %lld on every axis, fewer "
+                 "than 2^31 in all",
+                 static_cast<LongLong>(volume.dims[0]), static_cast<LongLong>(volume.dims[1]),
+                 static_cast<LongLong>(volume.dims[2]), static_cast<LongLong>(kMinDim));
+  }
+  for (const double spacing : volume.spacing) {
+    if (std::isfinite(spacing) && spacing > 0.0) continue;
+    return error(ErrorCode::kInvalidData,
+                 "spacing %g x %g x %g mm: expected finite sizes greater than 0", volume.spacing[0],
+                 volume.spacing[1], volume.spacing[2]);
+  }
+  return {};
+}
+
+Status check_spec(const PyramidSpec& spec) {
+  if (!(spec.reduction > 1.0 && spec.reduction <= 2.0)) {
+    return error(ErrorCode::kInvalidArgument, "reduction %.6g: expected more than 1 and at most 2",
+                 spec.reduction);
+  }
+  if (spec.levels < 0) {
+    return error(ErrorCode::kInvalidArgument, "levels %d: expected 0 or more", spec.levels);
+  }
+  const double width = spec.window_high - spec.window_low;
+  if (!(width > 0.0) || !std::isfinite(width) || !std::isfinite(1.0 / width)) {
+    return error(ErrorCode::kInvalidArgument,
+                 "window %g .. %g: expected finite values, the first below the second",
+                 spec.window_low, spec.window_high);
+  }
+  if (!std::isfinite(spec.pad_value)) {
+    return error(ErrorCode::kInvalidArgument, "pad value %g: expected a finite value",
+                 spec.pad_value);
+  }
+  if (spec.pad_voxels < 0) {
+    return error(ErrorCode::kInvalidArgument, "padding of %d voxels: expected 0 or more",
+                 spec.pad_voxels);
+  }
+  return {};
+}
+
+Status check_size(const std::array<int64_t, 3>& padded, const PyramidSpec& spec) {
+  const int64_t plane = padded[0] * padded[1];
+  if (plane >= kMaxVoxels || plane * padded[2] >= kMaxVoxels) {
+    return error(ErrorCode::kInvalidData,
+                 "image of %lld x %lld x %lld voxels with its padding of %d: expected fewer than "
+                 "2^31 in all",
+                 static_cast<LongLong>(padded[0]), static_cast<LongLong>(padded[1]),
+                 static_cast<LongLong>(padded[2]), spec.pad_voxels);
+  }
+  const int most = max_levels(padded, spec.reduction);
+  if (spec.levels > most) {
+    return error(ErrorCode::kInvalidArgument,
+                 "levels %d: too deep for an image of %lld x %lld x %lld voxels at reduction "
+                 "%.3g; at most %d",
+                 spec.levels, static_cast<LongLong>(padded[0]), static_cast<LongLong>(padded[1]),
+                 static_cast<LongLong>(padded[2]), spec.reduction, most);
+  }
+  return {};
+}
+
+// Sizes and units of (11); the real size mu x nu x pi is that of I_0 at all levels.
+PyramidLevel next_level(const PyramidLevel& level, double reduction) {
+  PyramidLevel next;
+  next.unit = reduction * level.unit;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    next.dims[axis] = reduced(level.dims[axis], reduction);
+    next.voxel[axis] = level.voxel[axis] * static_cast<double>(level.dims[axis]) /
+                       static_cast<double>(next.dims[axis]);
+  }
+  return next;
+}
+
+size_t voxels_of(const PyramidLevel& level) {
+  return static_cast<size_t>(level.dims[0] * level.dims[1] * level.dims[2]);
+}
+
+// False when memory ran out.
+bool fill_level(const PyramidLevel& from, const Executor& executor, SimdTarget simd,
+                PyramidLevel& to) {
+  std::array<AxisTaps, 3> taps;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    // floor() makes voxels larger than rho^h, never smaller: U_h is at most one voxel.
+    const double spread = std::min(1.0, from.unit / from.voxel[axis]);
+    taps[axis] = make_axis_taps(from.dims[axis], to.dims[axis], spread);
+  }
+  to.values.resize_uninitialized(voxels_of(to));
+  return reduce_image(from.values.data(), from.dims, taps, to.dims, executor, simd,
+                      to.values.data());
+}
+
+Status build_levels(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
+                    SimdTarget simd, Pyramid& pyramid) {
+  const Status out_of_memory =
+      error(ErrorCode::kOutOfMemory, "pyramid of %d levels: out of memory", spec.levels + 1);
+  try {
+    pyramid.levels.reserve(static_cast<size_t>(spec.levels) + 1);
+    PyramidLevel base;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      base.dims[axis] = volume.dims[axis] + 2 * int64_t{spec.pad_voxels};
+    }
+    base.voxel = volume.spacing;
+    base.unit = *std::min_element(volume.spacing.begin(), volume.spacing.end());
+    base.values.resize_uninitialized(voxels_of(base));
+    make_base_image(volume, {spec.window_low, 1.0 / (spec.window_high - spec.window_low)},
+                    spec.pad_voxels, spec.pad_value, executor, simd, base.values.data());
+    pyramid.levels.push_back(std::move(base));
+    for (int h = 0; h < spec.levels; ++h) {
+      PyramidLevel next = next_level(pyramid.levels.back(), spec.reduction);
+      if (!fill_level(pyramid.levels.back(), executor, simd, next)) return out_of_memory;
+      pyramid.levels.push_back(std::move(next));
+    }
+  } catch (const std::bad_alloc&) {
+    return out_of_memory;
+  }
+  return {};
+}
+
+}  // namespace
+
+int max_levels(const std::array<int64_t, 3>& padded_dims, double reduction) {
+  if (!(reduction > 1.0 && reduction <= 2.0)) return 0;
+  int64_t dim = *std::min_element(padded_dims.begin(), padded_dims.end());  // floor is monotonic
+  int levels = 0;
+  for (dim = reduced(dim, reduction); dim >= kMinLevelDim; dim = reduced(dim, reduction)) ++levels;
+  return levels;
+}
+
+Status build_pyramid(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
+                     SimdTarget simd, Pyramid& pyramid) {
+  pyramid.levels.clear();
+  Status status = check_volume(volume);
+  if (status.ok()) status = check_spec(spec);
+  if (!status.ok()) return status;
+  std::array<int64_t, 3> padded = volume.dims;
+  for (int64_t& dim : padded) dim += 2 * int64_t{spec.pad_voxels};
+  status = check_size(padded, spec);
+  if (status.ok()) status = build_levels(volume, spec, executor, simd, pyramid);
+  if (!status.ok()) pyramid.levels.clear();
+  return status;
+}
+
+}  // namespace plc
