@@ -7,7 +7,9 @@
 
 namespace plc {
 
-inline size_t block_count(size_t count, size_t block) { return (count + block - 1) / block; }
+inline size_t block_count(size_t count, size_t block) {
+  return (count + block - 1) / block;
+}
 
 // body(index of the block, begin, end) for [0, count) in pieces of `block`.
 template <typename Body>

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/blocks.h"
+
 namespace plc {
 namespace {
 
@@ -13,10 +15,6 @@ namespace {
 constexpr size_t kBlock = 4096;
 // The top of the tree is built level by level down to this many subtrees, then each is one task.
 constexpr size_t kSubtrees = 64;
-
-size_t blocks(size_t count) {
-  return (count + kBlock - 1) / kBlock;
-}
 
 }  // namespace
 
@@ -123,8 +121,8 @@ void FaceTree::build(const double* xyz, const uint32_t* abc, const uint32_t* ids
   if (count == 0) return;
   xyz_ = xyz;
   abc_ = abc;
-  executor.run(blocks(count), [&](size_t block) {
-    for (size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
+  run_blocks(executor, count, kBlock, [&](size_t, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
       Item& item = items_[i];
       item.face = ids[i];
       const Box box = face_box(ids[i]);

@@ -15,7 +15,9 @@ bool has_repeated_vertex(const uint32_t* ids) {
   return ids[0] == ids[1] || ids[1] == ids[2] || ids[2] == ids[0];
 }
 
-uint32_t next_corner(uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
+uint32_t next_corner(uint32_t corner) {
+  return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
 
 // Disjoint sets; the smallest member stands for the set.
 class Sets {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/blocks.h"
 #include "engine/predicates.h"
 #include "engine/triangle_intersection.h"
 
@@ -18,10 +19,9 @@ constexpr size_t kWave = 32;
 
 std::vector<uint32_t> proper_faces(const double* xyz, const uint32_t* abc, size_t face_count,
                                    const Executor& executor) {
-  const size_t blocks = (face_count + kFaceBlock - 1) / kFaceBlock;
-  std::vector<std::vector<uint32_t>> kept(blocks);
-  executor.run(blocks, [&](size_t block) {
-    for (size_t f = block * kFaceBlock; f < std::min(face_count, (block + 1) * kFaceBlock); ++f) {
+  std::vector<std::vector<uint32_t>> kept(block_count(face_count, kFaceBlock));
+  run_blocks(executor, face_count, kFaceBlock, [&](size_t block, size_t begin, size_t end) {
+    for (size_t f = begin; f < end; ++f) {
       const Triangle t = make_triangle(xyz, abc + 3 * f);
       if (!collinear(t.corner[0], t.corner[1], t.corner[2])) {
         kept[block].push_back(static_cast<uint32_t>(f));
@@ -39,7 +39,7 @@ std::vector<uint32_t> proper_faces(const double* xyz, const uint32_t* abc, size_
 std::vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc,
                                          const FaceTree& tree, const Executor& executor,
                                          size_t limit) {
-  const size_t tasks = (tree.leaf_count() + kLeafBlock - 1) / kLeafBlock;
+  const size_t tasks = block_count(tree.leaf_count(), kLeafBlock);
   const size_t wave = limit == std::numeric_limits<size_t>::max() ? tasks : kWave;
   std::vector<FacePair> all;
   std::vector<std::vector<FacePair>> found(wave);

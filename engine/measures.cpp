@@ -1,0 +1,122 @@
+#include "engine/measures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/blocks.h"
+#include "pyramid/buffer.h"
+
+namespace plc {
+namespace {
+
+constexpr size_t kFaceBlock = 4096;
+
+struct Vector {
+  double x, y, z;
+};
+
+template <typename Real>
+Vector difference(const Real* p, const Real* q) {
+  return {static_cast<double>(p[0]) - static_cast<double>(q[0]),
+          static_cast<double>(p[1]) - static_cast<double>(q[1]),
+          static_cast<double>(p[2]) - static_cast<double>(q[2])};
+}
+
+Vector cross(const Vector& a, const Vector& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+double dot(const Vector& a, const Vector& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+struct FaceMeasures {
+  double twice_area;
+  double six_volume;  // of the tetrahedron with the component's own corner
+};
+
+}  // namespace
+
+template <typename Real>
+std::vector<ComponentMeasures> component_measures(const Real* xyz, const uint32_t* abc,
+                                                  const MeshTopology& topology,
+                                                  const Executor& executor) {
+  const size_t face_count = topology.component.size();
+  const auto corner = [&](size_t c) { return xyz + 3 * static_cast<size_t>(abc[c]); };
+  Buffer<FaceMeasures> faces;
+  faces.resize_uninitialized(face_count);
+  run_blocks(executor, face_count, kFaceBlock, [&](size_t, size_t begin, size_t end) {
+    for (size_t f = begin; f < end; ++f) {
+      const size_t first = topology.components[topology.component[f]].first_face;
+      const Real *a = corner(3 * f), *b = corner(3 * f + 1), *c = corner(3 * f + 2);
+      const Vector normal = cross(difference(b, a), difference(c, a));
+      faces[f] = {std::sqrt(dot(normal, normal)), dot(normal, difference(a, corner(3 * first)))};
+    }
+  });
+  std::vector<ComponentMeasures> measures;
+  measures.reserve(topology.components.size());
+  for (const ComponentTopology& t : topology.components) {
+    const auto index = static_cast<uint32_t>(measures.size());
+    measures.push_back({index, t.first_face, t.faces, t.vertices, t.genus(), 0, 0});
+  }
+  for (size_t f = 0; f < face_count; ++f) {
+    ComponentMeasures& component = measures[topology.component[f]];
+    component.area += faces[f].twice_area;
+    component.volume += faces[f].six_volume;
+  }
+  for (ComponentMeasures& component : measures) {
+    component.area /= 2;
+    component.volume /= 6;
+  }
+  std::sort(measures.begin(), measures.end(),
+            [](const ComponentMeasures& a, const ComponentMeasures& b) {
+              return a.area != b.area ? a.area > b.area : a.component < b.component;
+            });
+  return measures;
+}
+
+template <typename Real>
+std::vector<ComponentMeasures> component_measures(const Real* xyz, size_t vertex_count,
+                                                  const uint32_t* abc, size_t face_count,
+                                                  const Executor& executor) {
+  const EdgeTable edges(abc, face_count, vertex_count, executor);
+  return component_measures(xyz, abc, mesh_topology(abc, face_count, vertex_count, edges),
+                            executor);
+}
+
+plc_measures total_measures(size_t vertex_count, const MeshTopology& topology,
+                            const std::vector<ComponentMeasures>& components) {
+  plc_measures m{};
+  m.struct_size = sizeof(plc_measures);
+  m.vertices = static_cast<int64_t>(vertex_count);
+  m.faces = static_cast<int64_t>(topology.component.size());
+  m.components = static_cast<int64_t>(components.size());
+  m.euler = topology.euler;
+  for (const ComponentMeasures& component : components) {
+    m.area += component.area;
+    m.volume += component.volume;
+    m.genus = m.genus < 0 || component.genus < 0 ? -1 : m.genus + component.genus;
+  }
+  return m;
+}
+
+template <typename Real>
+plc_measures surface_measures(const Real* xyz, size_t vertex_count, const uint32_t* abc,
+                              size_t face_count, const Executor& executor) {
+  const EdgeTable edges(abc, face_count, vertex_count, executor);
+  const MeshTopology topology = mesh_topology(abc, face_count, vertex_count, edges);
+  return total_measures(vertex_count, topology, component_measures(xyz, abc, topology, executor));
+}
+
+#define PLC_INSTANTIATE(Real)                                                                      \
+  template std::vector<ComponentMeasures> component_measures(                                      \
+      const Real*, const uint32_t*, const MeshTopology&, const Executor&);                         \
+  template std::vector<ComponentMeasures> component_measures(const Real*, size_t, const uint32_t*, \
+                                                             size_t, const Executor&);             \
+  template plc_measures surface_measures(const Real*, size_t, const uint32_t*, size_t,             \
+                                         const Executor&);
+PLC_INSTANTIATE(float)
+PLC_INSTANTIATE(double)
+#undef PLC_INSTANTIATE
+
+}  // namespace plc

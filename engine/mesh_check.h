@@ -1,0 +1,42 @@
+// Everything that can be wrong with a surface (plc_check), of any triangle mesh, exactly.
+//
+// closed     every edge has an even number of faces and no face repeats a vertex
+// manifold   no edge of more than two faces, no vertex with several umbrellas (sets of faces
+//            connected around it), no face that repeats a vertex; borders are allowed, and so are
+//            neighbours that run their edge in the same direction (see oriented)
+// oriented   no edge of more than two faces, both faces of an edge run it in opposite directions,
+//            no face that repeats a vertex
+// outward    of closed and oriented meshes: the volume of each component is > 0, of those inside an
+//            odd number of others (walls of cavities) < 0; -1 for other meshes
+// valid      all of these, no face of zero area, no self-intersection, and at least one face
+// valence    over the vertices that have an edge
+//
+// An empty mesh has no edge at fault: closed, manifold and oriented, but not valid, outward -1 and
+// all measures 0. Euler's number leaves out isolated vertices and faces that repeat a vertex; each
+// of the latter counts as a component. The volume of a mesh that is not closed means nothing.
+#pragma once
+#include <cstdint>
+
+#include "engine/pellicle.h"
+#include "pyramid/executor.h"
+#include "pyramid/status.h"
+
+namespace plc {
+
+// Coordinates are 0 or within these magnitudes: the predicates are exact on them and neither areas
+// nor volumes over- or underflow.
+inline constexpr double kCoordinateMin = 1e-70;
+inline constexpr double kCoordinateMax = 1e70;
+
+// plc_check::self_intersections stops counting here: more take longer than anyone waits for and say
+// no more. first_intersection is then one of those counted.
+inline constexpr int64_t kMaxIntersections = 1000000;
+
+// xyz: three values per vertex; abc: three indices per face; NULL only where there are none. At
+// most 2^32 vertices and kMaxFaces faces. kInvalidArgument for impossible counts, kInvalidData for
+// a value or an index out of range, with a message that names the first one; check is then
+// unchanged. Otherwise all of it but struct_size is written. The same bits for any executor.
+Status check_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
+                  const Executor& executor, plc_check& check);
+
+}  // namespace plc
