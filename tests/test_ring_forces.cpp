@@ -1,0 +1,280 @@
+#include "kernels/ring_forces.h"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "kernel_fixtures.h"
+#include "kernels/lane_sum.h"
+#include "kernels/scalar.h"
+
+namespace {
+
+using namespace fixtures;
+using plc::Packed;
+using plc::RingView;
+using plc::SimdTarget;
+namespace kernels = plc::kernels;
+namespace scalar = plc::kernels::scalar;
+
+using Vector = std::array<double, 3>;
+
+Vector at(const RandomRings& rings, uint32_t v) {
+  const Packed& p = rings.position[v];
+  return {double{p.x}, double{p.y}, double{p.z}};
+}
+Vector operator-(const Vector& a, const Vector& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+void add(Vector& sum, const Vector& a, double factor = 1.0) {
+  for (size_t i = 0; i < 3; ++i) sum[i] += factor * a[i];
+}
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double length(const Vector& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+
+// Mean of the ring minus the vertex, straight from the text under (5).
+Vector mean_minus_own(const RandomRings& rings, uint32_t v) {
+  Vector mean{};
+  for (const uint32_t u : rings.rings[v]) {
+    add(mean, at(rings, u), 1.0 / static_cast<double>(rings.rings[v].size()));
+  }
+  return rings.rings[v].empty() ? Vector{} : mean - at(rings, v);
+}
+
+// Three force streams, untouched outside [begin, end).
+struct Streams {
+  std::vector<float> x, y, z;
+  Streams(uint32_t count, float value) : x(count, value), y(count, value), z(count, value) {}
+  std::vector<float> all() const {
+    std::vector<float> values = x;
+    values.insert(values.end(), y.begin(), y.end());
+    values.insert(values.end(), z.begin(), z.end());
+    return values;
+  }
+};
+
+// Within `tolerance` of the reference on [begin, end), not written elsewhere.
+void require_near(const Streams& got, const std::vector<Vector>& expected, uint32_t begin,
+                  uint32_t end, double tolerance) {
+  for (uint32_t v = 0; v < got.x.size(); ++v) {
+    const Vector own{double{got.x[v]}, double{got.y[v]}, double{got.z[v]}};
+    CAPTURE(v);
+    if (v < begin || v >= end) {
+      REQUIRE(own == Vector{double{kUntouched}, double{kUntouched}, double{kUntouched}});
+    } else {
+      REQUIRE(length(own - expected[v]) <= tolerance);
+    }
+  }
+}
+
+// Ranges of 160 vertices: whole, inner blocks, one block, none.
+const std::vector<std::array<uint32_t, 2>> kRanges = {{0, 160}, {16, 112}, {144, 160}, {32, 32}};
+
+}  // namespace
+
+TEST_CASE("the Laplacian is the mean of the ring minus the vertex", "[kernels]") {
+  const RandomRings rings = mixed_rings(10, 1);
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    for (const auto& [begin, end] : kRanges) {
+      CAPTURE(plc::simd_target_name(simd), begin, end);
+      const Packed untouched{kUntouched, kUntouched, kUntouched, kUntouched};
+      std::vector<Packed> got(rings.count(), untouched);
+      std::vector<Packed> twin = got;
+      kernels::laplacian(simd, rings.view(), rings.position.data(), begin, end, got.data());
+      scalar::laplacian(rings.view(), rings.position.data(), begin, end, twin.data());
+      REQUIRE(first_difference(flatten(got), flatten(twin)) == -1);
+      for (uint32_t v = 0; v < rings.count(); ++v) {
+        CAPTURE(v);
+        if (v < begin || v >= end) {
+          REQUIRE(got[v].w == kUntouched);
+          continue;
+        }
+        const Vector own{double{got[v].x}, double{got[v].y}, double{got[v].z}};
+        REQUIRE(length(own - mean_minus_own(rings, v)) < 1e-4);
+        REQUIRE(got[v].w == 0.0F);
+      }
+    }
+  }
+}
+
+TEST_CASE("the curvature force is equation (5)", "[kernels]") {
+  const RandomRings rings = mixed_rings(10, 2);
+  const float alpha = -0.7F;  // a negative factor would turn the 0 of dead vertices into -0
+  std::vector<Packed> laplacian(rings.count());
+  scalar::laplacian(rings.view(), rings.position.data(), 0, rings.count(), laplacian.data());
+  std::vector<Vector> expected(rings.count());
+  for (uint32_t v = 0; v < rings.count(); ++v) {
+    const auto valence = static_cast<double>(rings.rings[v].size());
+    add(expected[v], mean_minus_own(rings, v), double{alpha});
+    for (const uint32_t u : rings.rings[v]) {
+      add(expected[v], mean_minus_own(rings, u), -double{alpha} / valence);
+    }
+  }
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    for (const auto& [begin, end] : kRanges) {
+      CAPTURE(plc::simd_target_name(simd), begin, end);
+      Streams got(rings.count(), kUntouched);
+      Streams twin(rings.count(), kUntouched);
+      kernels::curvature_force(simd, rings.view(), laplacian.data(), alpha, begin, end,
+                               got.x.data(), got.y.data(), got.z.data());
+      scalar::curvature_force(rings.view(), laplacian.data(), alpha, begin, end, twin.x.data(),
+                              twin.y.data(), twin.z.data());
+      REQUIRE(first_difference(got.all(), twin.all()) == -1);
+      require_near(got, expected, begin, end, 1e-4);
+    }
+  }
+}
+
+TEST_CASE("the spring force is equation (6), added to what is there", "[kernels]") {
+  RandomRings rings = mixed_rings(10, 3);
+  rings.position[rings.rings[20][0]] = rings.position[20];  // coincident neighbours add nothing
+  const float alpha = 0.3F;
+  for (const float rest : {0.0F, 120.0F}) {
+    std::vector<Vector> expected(rings.count());
+    for (uint32_t v = 0; v < rings.count(); ++v) {
+      expected[v] = {double{kUntouched}, double{kUntouched}, double{kUntouched}};
+      for (const uint32_t u : rings.rings[v]) {
+        const Vector edge = at(rings, u) - at(rings, v);
+        if (length(edge) == 0) continue;
+        add(expected[v], edge, double{alpha} * (length(edge) - double{rest}) / length(edge));
+      }
+    }
+    for (const SimdTarget simd : plc::available_simd_targets()) {
+      for (const auto& [begin, end] : kRanges) {
+        CAPTURE(plc::simd_target_name(simd), begin, end, rest);
+        Streams got(rings.count(), kUntouched);
+        Streams twin(rings.count(), kUntouched);
+        kernels::spring_force(simd, rings.view(), rings.position.data(), alpha, rest, begin, end,
+                              got.x.data(), got.y.data(), got.z.data());
+        scalar::spring_force(rings.view(), rings.position.data(), alpha, rest, begin, end,
+                             twin.x.data(), twin.y.data(), twin.z.data());
+        REQUIRE(first_difference(got.all(), twin.all()) == -1);
+        require_near(got, expected, begin, end, 2e-3);
+      }
+    }
+  }
+}
+
+TEST_CASE("normals are the sum of the cross products around the ring, of length 1", "[kernels]") {
+  RandomRings rings = mixed_rings(10, 4);
+  for (const uint32_t u : rings.rings[33]) rings.position[u] = rings.position[33];  // a sum of 0
+  std::vector<Vector> expected(rings.count());
+  for (uint32_t v = 0; v < rings.count(); ++v) {
+    const std::vector<uint32_t>& ring = rings.rings[v];
+    Vector sum{};
+    for (size_t k = 0; k < ring.size(); ++k) {
+      add(sum, cross(at(rings, ring[k]) - at(rings, v),
+                     at(rings, ring[(k + 1) % ring.size()]) - at(rings, v)));
+    }
+    if (length(sum) > 0) add(expected[v], sum, 1.0 / length(sum));
+  }
+  REQUIRE(length(expected[33]) == 0.0);
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    for (const auto& [begin, end] : kRanges) {
+      CAPTURE(plc::simd_target_name(simd), begin, end);
+      Streams got(rings.count(), kUntouched);
+      Streams twin(rings.count(), kUntouched);
+      kernels::normals(simd, rings.view(), rings.position.data(), begin, end, got.x.data(),
+                       got.y.data(), got.z.data());
+      scalar::normals(rings.view(), rings.position.data(), begin, end, twin.x.data(),
+                      twin.y.data(), twin.z.data());
+      REQUIRE(first_difference(got.all(), twin.all()) == -1);
+      require_near(got, expected, begin, end, 1e-4);
+    }
+  }
+}
+
+TEST_CASE("the normal of a vertex seen with its ring counter-clockwise points at the viewer",
+          "[kernels]") {
+  // Vertex 0 at the origin, its ring in the plane z = 0 counter-clockwise seen from +z.
+  std::vector<uint32_t> columns(plc::kRingColumns * plc::kRingLanes, 0);
+  for (uint32_t k = 0; k < 4; ++k) columns[k * plc::kRingLanes] = k + 1;
+  std::vector<uint16_t> valence(plc::kRingLanes, 0);
+  valence[0] = 4;
+  std::vector<Packed> position(plc::kRingLanes, Packed{0, 0, 0, 0});
+  position[1] = {1, 0, 0, 0};
+  position[2] = {0, 1, 0, 0};
+  position[3] = {-1, 0, 0, 0};
+  position[4] = {0, -1, 0, 0};
+  const RingView view{columns.data(), valence.data(), nullptr};
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    Streams got(plc::kRingLanes, kUntouched);
+    kernels::normals(simd, view, position.data(), 0, plc::kRingLanes, got.x.data(),
+                     got.y.data(), got.z.data());
+    REQUIRE(got.x[0] == 0.0F);
+    REQUIRE(got.y[0] == 0.0F);
+    REQUIRE(got.z[0] == 1.0F);
+  }
+}
+
+TEST_CASE("an edge as long as a limit violates it", "[kernels]") {
+  // Every edge of the first ring has length 5: constraint (1) asks for more, (2) for less.
+  RandomRings rings = mixed_rings(10, 6);
+  rings.position[0] = {0, 0, 0, 0};
+  for (const uint32_t u : rings.rings[0]) rings.position[u] = {3, 4, 0, 0};
+  const auto flags_at_0 = [&](SimdTarget simd, float min_squared, float max_squared) {
+    std::vector<uint8_t> flags(rings.count(), 9);
+    kernels::edge_violations(simd, rings.view(), rings.position.data(), min_squared, max_squared,
+                             0, 16, flags.data());
+    return static_cast<int>(flags[0]);
+  };
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    REQUIRE(flags_at_0(simd, 25.0F, 26.0F) == 1);
+    REQUIRE(flags_at_0(simd, 24.0F, 25.0F) == 2);
+    REQUIRE(flags_at_0(simd, 24.0F, 26.0F) == 0);
+    REQUIRE(flags_at_0(simd, 25.0F, 25.0F) == 3);
+  }
+}
+
+TEST_CASE("edge violations are found in columns and tails alike", "[kernels]") {
+  const RandomRings rings = mixed_rings(10, 7);
+  const float min_squared = 40.0F * 40.0F, max_squared = 320.0F * 320.0F;
+  int tails_alone = 0;
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    for (const auto& [begin, end] : kRanges) {
+      CAPTURE(plc::simd_target_name(simd), begin, end);
+      std::vector<uint8_t> flags(rings.count(), 9);
+      kernels::edge_violations(simd, rings.view(), rings.position.data(), min_squared, max_squared,
+                               begin, end, flags.data());
+      for (uint32_t v = 0; v < rings.count(); ++v) {
+        CAPTURE(v);
+        int expected = 0, columns_only = 0;
+        for (size_t k = 0; k < rings.rings[v].size(); ++k) {
+          const double edge = length(at(rings, rings.rings[v][k]) - at(rings, v));
+          expected |= edge <= 40.0 ? 1 : 0;
+          expected |= edge >= 320.0 ? 2 : 0;
+          if (k < plc::kRingSlots) columns_only = expected;
+        }
+        if (v < begin || v >= end) expected = 9;
+        REQUIRE(static_cast<int>(flags[v]) == expected);
+        tails_alone += expected != 9 && expected != columns_only ? 1 : 0;
+      }
+    }
+  }
+  REQUIRE(tails_alone > 0);
+}
+
+TEST_CASE("edge lengths add up to the same bits for every target", "[kernels]") {
+  const RandomRings rings = mixed_rings(10, 8);
+  for (const auto& [begin, end] : kRanges) {
+    double expected = 0;
+    for (uint32_t v = begin; v < end; ++v) {
+      for (const uint32_t u : rings.rings[v]) expected += length(at(rings, u) - at(rings, v));
+    }
+    const double twin = scalar::edge_length_sum(rings.view(), rings.position.data(), begin, end);
+    REQUIRE(twin == Approx(expected).epsilon(1e-6));
+    for (const SimdTarget simd : plc::available_simd_targets()) {
+      CAPTURE(plc::simd_target_name(simd), begin, end);
+      REQUIRE(kernels::edge_length_sum(simd, rings.view(), rings.position.data(), begin, end) ==
+              twin);
+    }
+  }
+}
+
+TEST_CASE("lane sums are added pairwise", "[kernels]") {
+  // 2^53 + 1 loses the 1 unless the ones meet each other first.
+  double lanes[plc::kRingLanes] = {9007199254740992.0, 1, 0, 0, 0, 0, 0, 0, 0, 1};
+  REQUIRE(kernels::add_lanes(lanes) == 9007199254740994.0);
+}
