@@ -67,11 +67,14 @@ std::vector<double> volume_preserving_isos(const Pyramid& pyramid, double iso_0,
     const Buffer<float>& values = pyramid.levels[h].values;
     const std::vector<uint32_t> bins = histogram(values);
     if (*std::max_element(bins.begin(), bins.end()) == values.size()) continue;  // one value only
-    // All values that keep the volume to half a voxel are as good; the nearest to iso_0 of them is
-    // the steadiest choice where the histogram is empty, as between the two values of a mask.
-    const double wanted = static_cast<double>(below) * static_cast<double>(values.size()) /
-                          static_cast<double>(base.size());
-    isos[h] = within(std::clamp(iso_0, quantile(bins, wanted - 0.5), quantile(bins, wanted + 0.5)));
+    // All values that keep the volume to half a voxel, or to half of what is left of it, are as
+    // good: of them the nearest to iso_0 is the steadiest choice where the histogram is empty, as
+    // between the two values of a mask.
+    const auto voxels = static_cast<double>(values.size());
+    const double wanted = static_cast<double>(below) * voxels / static_cast<double>(base.size());
+    const double slack = 0.5 * std::min({1.0, wanted, voxels - wanted});
+    isos[h] =
+        within(std::clamp(iso_0, quantile(bins, wanted - slack), quantile(bins, wanted + slack)));
   }
   return isos;
 }

@@ -20,9 +20,9 @@ struct Image {
   std::vector<float> values;
   ImageView view;
   Image(int32_t m, int32_t n, int32_t p, uint32_t seed)
-      : values(random_floats(static_cast<size_t>(m) * static_cast<size_t>(n) *
-                                 static_cast<size_t>(p),
-                             0.0F, 1.0F, seed)) {
+      : values(
+            random_floats(static_cast<size_t>(m) * static_cast<size_t>(n) * static_cast<size_t>(p),
+                          0.0F, 1.0F, seed)) {
     view.data = values.data();
     view.dims[0] = m;
     view.dims[1] = n;
@@ -90,7 +90,8 @@ TEST_CASE("sampling is trilinear between voxel centres", "[kernels]") {
           if (i < begin || i >= end) {
             REQUIRE(got[i] == kUntouched);
           } else {
-            REQUIRE(double{got[i]} == Approx(expected_sample(image.view, position[i])).margin(1e-5));
+            REQUIRE(double{got[i]} ==
+                    Approx(expected_sample(image.view, position[i])).margin(1e-5));
           }
         }
       }
@@ -122,8 +123,14 @@ TEST_CASE("no position makes sampling read outside the image", "[kernels]") {
   Image image(2, 2, 2, 4);
   std::vector<Packed> position;
   const float inf = std::numeric_limits<float>::infinity();
-  const std::vector<float> wild = {std::numeric_limits<float>::quiet_NaN(), inf, -inf, 3.4e38F,
-                                   -3.4e38F, 2147483648.0F, -2147483904.0F, 0.5F};
+  const std::vector<float> wild = {std::numeric_limits<float>::quiet_NaN(),
+                                   inf,
+                                   -inf,
+                                   3.4e38F,
+                                   -3.4e38F,
+                                   2147483648.0F,
+                                   -2147483904.0F,
+                                   0.5F};
   for (const float x : wild) {
     for (const float y : wild) {
       for (const float z : wild) position.push_back({x, y, z, 0.0F});
@@ -159,8 +166,7 @@ TEST_CASE("the iso-potential force is equation (7), added to what is there", "[k
       for (uint32_t a = 0; a < 3; ++a) got[a] = twin[a] = random_floats(count, -5, 5, 10 + a);
       const std::vector<float> before[3] = {got[0], got[1], got[2]};
       kernels::iso_force(simd, image.view, position.data(), nx.data(), ny.data(), nz.data(),
-                         coefficient, iso, begin, end, got[0].data(), got[1].data(),
-                         got[2].data());
+                         coefficient, iso, begin, end, got[0].data(), got[1].data(), got[2].data());
       scalar::iso_force(image.view, position.data(), nx.data(), ny.data(), nz.data(), coefficient,
                         iso, begin, end, twin[0].data(), twin[1].data(), twin[2].data());
       const float* normal[3] = {nx.data(), ny.data(), nz.data()};
@@ -168,11 +174,11 @@ TEST_CASE("the iso-potential force is equation (7), added to what is there", "[k
         REQUIRE(first_difference(got[a], twin[a]) == -1);
         for (uint32_t i = 0; i < count; ++i) {
           const bool in_range = i >= begin && i < end;
-          const double push =
-              in_range ? double{coefficient} *
-                             (double{iso} - expected_sample(image.view, position[i])) *
-                             double{normal[a][i]}
-                       : 0.0;
+          const double push = in_range
+                                  ? double{coefficient} *
+                                        (double{iso} - expected_sample(image.view, position[i])) *
+                                        double{normal[a][i]}
+                                  : 0.0;
           CAPTURE(i, a);
           REQUIRE(double{got[a][i]} == Approx(double{before[a][i]} + push).margin(2e-5));
           if (!in_range) REQUIRE(got[a][i] == before[a][i]);

@@ -146,11 +146,11 @@ TEST_CASE("movements longer than the bound are shortened, the others keep their 
     twin.d[0][20] = twin.d[1][20] = twin.d[2][20] = 0.0F;
     const Particles before = got;
     kernels::clamp_movement(simd, max_length, max_speed, got.d[0].data(), got.d[1].data(),
-                            got.d[2].data(), got.v[0].data(), got.v[1].data(), got.v[2].data(),
-                            16, 64);
+                            got.d[2].data(), got.v[0].data(), got.v[1].data(), got.v[2].data(), 16,
+                            64);
     scalar::clamp_movement(max_length, max_speed, twin.d[0].data(), twin.d[1].data(),
-                           twin.d[2].data(), twin.v[0].data(), twin.v[1].data(),
-                           twin.v[2].data(), 16, 64);
+                           twin.d[2].data(), twin.v[0].data(), twin.v[1].data(), twin.v[2].data(),
+                           16, 64);
     REQUIRE(first_difference(got.all(), twin.all()) == -1);
     int shortened = 0;
     for (uint32_t i = 0; i < 80; ++i) {
@@ -216,9 +216,9 @@ TEST_CASE("the energy along the normals has the same bits for every target", "[k
     for (int a = 0; a < 3; ++a) along += double{all.d[a][i]} * double{all.f[a][i]};
     expected += along * along;
   }
-  const double twin = scalar::normal_energy_sum(all.d[0].data(), all.d[1].data(), all.d[2].data(),
-                                                all.f[0].data(), all.f[1].data(),
-                                                all.f[2].data(), 32, 4080);
+  const double twin =
+      scalar::normal_energy_sum(all.d[0].data(), all.d[1].data(), all.d[2].data(), all.f[0].data(),
+                                all.f[1].data(), all.f[2].data(), 32, 4080);
   REQUIRE(twin == Approx(expected).epsilon(1e-6));
   for (const SimdTarget simd : plc::available_simd_targets()) {
     CAPTURE(plc::simd_target_name(simd));

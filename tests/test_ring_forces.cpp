@@ -32,7 +32,9 @@ void add(Vector& sum, const Vector& a, double factor = 1.0) {
 Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-double length(const Vector& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+double length(const Vector& a) {
+  return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
 
 // Mean of the ring minus the vertex, straight from the text under (5).
 Vector mean_minus_own(const RandomRings& rings, uint32_t v) {
@@ -178,8 +180,8 @@ TEST_CASE("normals are the sum of the cross products around the ring, of length 
       Streams twin(rings.count(), kUntouched);
       kernels::normals(simd, rings.view(), rings.position.data(), begin, end, got.x.data(),
                        got.y.data(), got.z.data());
-      scalar::normals(rings.view(), rings.position.data(), begin, end, twin.x.data(),
-                      twin.y.data(), twin.z.data());
+      scalar::normals(rings.view(), rings.position.data(), begin, end, twin.x.data(), twin.y.data(),
+                      twin.z.data());
       REQUIRE(first_difference(got.all(), twin.all()) == -1);
       require_near(got, expected, begin, end, 1e-4);
     }
@@ -201,8 +203,8 @@ TEST_CASE("the normal of a vertex seen with its ring counter-clockwise points at
   const RingView view{columns.data(), valence.data(), nullptr};
   for (const SimdTarget simd : plc::available_simd_targets()) {
     Streams got(plc::kRingLanes, kUntouched);
-    kernels::normals(simd, view, position.data(), 0, plc::kRingLanes, got.x.data(),
-                     got.y.data(), got.z.data());
+    kernels::normals(simd, view, position.data(), 0, plc::kRingLanes, got.x.data(), got.y.data(),
+                     got.z.data());
     REQUIRE(got.x[0] == 0.0F);
     REQUIRE(got.y[0] == 0.0F);
     REQUIRE(got.z[0] == 1.0F);
@@ -216,8 +218,8 @@ TEST_CASE("an edge as long as a limit violates it", "[kernels]") {
   for (const uint32_t u : rings.rings[0]) rings.position[u] = {3, 4, 0, 0};
   const auto flags_at_0 = [&](SimdTarget simd, float min_squared, float max_squared) {
     std::vector<uint8_t> flags(rings.count(), 9);
-    kernels::edge_violations(simd, rings.view(), rings.position.data(), min_squared, max_squared,
-                             0, 16, flags.data());
+    kernels::edge_violations(simd, rings.view(), rings.position.data(), min_squared, max_squared, 0,
+                             16, flags.data());
     return static_cast<int>(flags[0]);
   };
   for (const SimdTarget simd : plc::available_simd_targets()) {
