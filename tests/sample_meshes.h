@@ -1,5 +1,6 @@
 // Meshes with known properties for the tests.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -71,7 +72,7 @@ inline Soup sphere(int levels) {
     const std::vector<uint32_t> old = std::move(m.abc);
     m.abc.clear();
     const auto middle = [&](uint32_t a, uint32_t b) {
-      const auto [it, fresh] = middles.try_emplace(std::minmax(a, b), 0U);
+      const auto [it, fresh] = middles.try_emplace({std::min(a, b), std::max(a, b)}, 0U);
       if (fresh) {
         std::array<double, 3> p{};
         for (size_t k = 0; k < 3; ++k) p[k] = m.xyz[3 * a + k] + m.xyz[3 * b + k];
