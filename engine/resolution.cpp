@@ -176,19 +176,25 @@ void Resolution::apply_round(const std::vector<Candidate>& candidates,
                              std::vector<uint32_t>& later, OperationCounts& counts) {
   ++round_;
   for (const Candidate& candidate : candidates) {
-    if (!claim(candidate)) {
+    if (!free_footprint(candidate)) {
       later.push_back(candidate.edge.u);
       later.push_back(candidate.edge.v);
     } else if (!within_limit(candidate)) {
       ++counts.deferred;
+    } else if (apply(candidate, counts)) {
+      for (const uint32_t v : footprint_) claim_[v] = round_;
     } else {
-      apply(candidate, counts);
+      // The vertices stay due: the next iteration tries again.
+      ++counts.refused;
+      mesh_.wake(candidate.edge.u);
+      mesh_.wake(candidate.edge.v);
     }
   }
 }
 
-// Claims the closed rings of the vertices that the candidate changes or was found from.
-bool Resolution::claim(const Candidate& candidate) {
+// Fills footprint_ with the closed rings of the vertices that the candidate changes or was found
+// from; false when an earlier candidate of the round has claimed one of them.
+bool Resolution::free_footprint(const Candidate& candidate) {
   const Edge& e = candidate.edge;
   uint32_t corners[4] = {e.u, e.v, e.u, e.u};
   if (candidate.operation == Operation::kAnnular) corners[2] = e.a;
@@ -196,19 +202,18 @@ bool Resolution::claim(const Candidate& candidate) {
     corners[2] = e.a;
     corners[3] = e.b;
   }
-  // What an earlier candidate of the round created is claimed, too.
-  const auto free = [&](uint32_t v) { return v < claim_.size() && claim_[v] != round_; };
+  footprint_.clear();
+  // What an earlier candidate of the round created has no claim slot yet, and is claimed, too.
+  const auto add = [&](uint32_t v) {
+    footprint_.push_back(v);
+    return v < claim_.size() && claim_[v] != round_;
+  };
   for (const uint32_t c : corners) {
-    if (!free(c) || !mesh_.alive(c)) return false;
+    if (!mesh_.alive(c) || !add(c)) return false;
     const uint32_t d = mesh_.valence(c);
     for (uint32_t k = 0; k < d; ++k) {
-      if (!free(mesh_.neighbor(c, k))) return false;
+      if (!add(mesh_.neighbor(c, k))) return false;
     }
-  }
-  for (const uint32_t c : corners) {
-    claim_[c] = round_;
-    const uint32_t d = mesh_.valence(c);
-    for (uint32_t k = 0; k < d; ++k) claim_[mesh_.neighbor(c, k)] = round_;
   }
   return true;
 }
@@ -226,41 +231,27 @@ bool Resolution::within_limit(const Candidate& candidate) {
   return true;
 }
 
-void Resolution::apply(const Candidate& candidate, OperationCounts& counts) {
-  bool done = true;
+// False when the embedding guard refused it; the mesh is as before then.
+bool Resolution::apply(const Candidate& candidate, OperationCounts& counts) {
+  const auto count = [](bool done, int64_t& counter) {
+    counter += done ? 1 : 0;
+    return done;
+  };
   switch (candidate.operation) {
-    case Operation::kCreation:
-      apply_creation(candidate);
-      ++counts.creation;
-      break;
-    case Operation::kInversion:
-      done = apply_inversion(candidate);
-      counts.inversion += done ? 1 : 0;
-      // A long edge that may not be inverted is split.
-      if (!done && candidate.key < 0) {
-        apply_creation(candidate);
-        ++counts.creation;
-        done = true;
-      }
-      break;
-    case Operation::kDeletion:
-      done = apply_deletion(candidate, counts);
-      break;
     case Operation::kAnnular:
-      done = apply_annular(candidate);
-      counts.annular += done ? 1 : 0;
-      break;
+      return count(apply_annular(candidate), counts.annular);
+    case Operation::kDeletion:
+      return apply_deletion(candidate, counts);
+    case Operation::kInversion:
+      if (count(apply_inversion(candidate), counts.inversion)) return true;
+      // A long edge that may not be inverted is split.
+      return candidate.key < 0 && count(apply_creation(candidate), counts.creation);
+    case Operation::kCreation:
+      return count(apply_creation(candidate), counts.creation);
     case Operation::kAxial:
-      done = apply_axial(candidate);
-      counts.axial += done ? 1 : 0;
-      break;
+      return count(apply_axial(candidate), counts.axial);
   }
-  if (!done) {
-    ++counts.refused;
-    for (const uint32_t v : {candidate.edge.u, candidate.edge.v}) {
-      if (mesh_.alive(v)) mesh_.wake(v);
-    }
-  }
+  return false;
 }
 
 void Resolution::involve(uint32_t v) {
@@ -273,8 +264,9 @@ void Resolution::moved(uint32_t v) {
   involve(v);
 }
 
-void Resolution::apply_creation(const Candidate& candidate) {
+bool Resolution::apply_creation(const Candidate& candidate) {
   moved(create_on_edge(mesh_, candidate.edge));
+  return true;
 }
 
 bool Resolution::apply_inversion(const Candidate& candidate) {

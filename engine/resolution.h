@@ -37,14 +37,14 @@ class Resolution {
   // Applies what does not conflict; the vertices of what does are appended to `later`.
   void apply_round(const std::vector<Candidate>& candidates, std::vector<uint32_t>& later,
                    OperationCounts& counts);
-  bool claim(const Candidate& candidate);
+  bool free_footprint(const Candidate& candidate);
   bool within_limit(const Candidate& candidate);
-  void apply(const Candidate& candidate, OperationCounts& counts);
+  bool apply(const Candidate& candidate, OperationCounts& counts);
   bool apply_inversion(const Candidate& candidate);
   bool apply_deletion(const Candidate& candidate, OperationCounts& counts);
   bool apply_annular(const Candidate& candidate);
   bool apply_axial(const Candidate& candidate);
-  void apply_creation(const Candidate& candidate);
+  bool apply_creation(const Candidate& candidate);
   // v has changed: its constraints are checked again in this pass.
   void involve(uint32_t v);
   void moved(uint32_t v);
@@ -65,6 +65,7 @@ class Resolution {
   std::vector<uint32_t> changed_;    // where components may have become tiny
   std::vector<uint32_t> stamp_;      // by vertex: the queue it is in
   std::vector<uint32_t> claim_;      // by vertex: the round that claimed it
+  std::vector<uint32_t> footprint_;  // of the candidate at hand
   uint32_t stamp_count_ = 0;
   uint32_t round_ = 0;
 };
