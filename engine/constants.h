@@ -52,6 +52,13 @@ inline constexpr uint32_t kCutExemption = 5;
 // 3.46 delta are found. Edges reach 2.5 delta by (2) and 0.8 more by one movement of both ends.
 inline constexpr float kFaceReach = 2.0F;
 
+// The motion guard looks for other parts of the surface within this, in delta: (1/2 + 1/sqrt 3) of the
+// longest edge of (2), and 0.3 more for what vertices move between two checks.
+inline constexpr float kRiskReach = 3.0F;
+// ... whose normals are turned against a vertex's own by more than this cosine. Higher tests more
+// faces; from 0.5 down to 0.2 no run was seen to differ.
+inline constexpr float kRiskDot = 0.3F;
+
 // Components up to this size are watched for turning inside out.
 inline constexpr uint32_t kTinyComponent = 40;
 // ... and deleted when their volume falls under this (in delta^3) or changes sign.

@@ -6,18 +6,16 @@ Evolution::Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, cons
     : mesh_(mesh), dynamics_(mesh, schedule, simd, model), guard_(mesh, schedule),
       resolution_(mesh, schedule, simd) {}
 
-void Evolution::restart() {
-  resolution_.restart();
-  guard_.restart();
-}
+void Evolution::restart() { resolution_.restart(); }
 
 void Evolution::iterate(const ImageView& image, float iso, Seconds& seconds,
                         OperationCounts& counts) {
   const double start = now();
   dynamics_.step(image, iso, seconds);
   const double moved = now();
-  counts.reverted += guard_.take_back(dynamics_.before());
-  resolution_.run(++iteration_, false, counts);
+  const auto& due = resolution_.take_due(false);
+  counts.reverted += guard_.take_back(dynamics_.before(), due, resolution_.hash());
+  resolution_.run(++iteration_, counts);
   const double end = now();
   seconds.topology += end - moved;
   seconds.total += end - start;
@@ -25,7 +23,8 @@ void Evolution::iterate(const ImageView& image, float iso, Seconds& seconds,
 
 void Evolution::check_all(Seconds& seconds, OperationCounts& counts) {
   const double start = now();
-  resolution_.run(++iteration_, true, counts);
+  resolution_.take_due(true);
+  resolution_.run(++iteration_, counts);
   const double end = now();
   seconds.topology += end - start;
   seconds.total += end - start;

@@ -70,6 +70,7 @@ uint32_t Mesh::create(Vec3 p, Vec3 speed) {
   normal.set(v, {});
   displacement.set(v, {});
   path[v] = 0;
+  risk[v] = 1;
   operations[v] = 0;
   cut_id[v] = 0;
   cut_iteration[v] = 0;
@@ -169,6 +170,7 @@ void Mesh::grow(uint32_t slots) {
   packed.resize(n);
   path.resize(n);
   idle.resize(n);
+  risk.resize(n);
   operations.resize(n);
   cut_id.resize(n);
   cut_iteration.resize(n);
@@ -219,6 +221,7 @@ void Mesh::renumber(const std::vector<uint32_t>& order) {
   carry(to.packed, packed);
   carry(to.path, path);
   carry(to.idle, idle);
+  carry(to.risk, risk);
   carry(to.operations, operations);
   carry(to.cut_id, cut_id);
   carry(to.cut_iteration, cut_iteration);
@@ -256,7 +259,7 @@ uint64_t Mesh::bytes() const {
   const auto of = [](const auto& b) { return b.capacity() * sizeof(b[0]); };
   const auto of3 = [&](const Streams3& s) { return of(s.x) + of(s.y) + of(s.z); };
   return of3(position) + of3(velocity) + of3(normal) + of3(displacement) + of(packed) + of(path) +
-         of(idle) + of(operations) + of(cut_id) + of(cut_iteration) + of(columns_) + of(valence_) +
+         of(idle) + of(risk) + of(operations) + of(cut_id) + of(cut_iteration) + of(columns_) + of(valence_) +
          of(tail_);
 }
 

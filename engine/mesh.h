@@ -29,6 +29,7 @@ struct Streams3 {
 //   displacement   12     mesh units    rk4, bound
 //   path           4      mesh units    move; reset when the constraints of v are checked
 //   idle           1      iterations    since the constraints of v were checked
+//   risk           1      flag          motion guard: the surface is near or folded here
 //   operations     1      count         resolution, in this iteration
 //   cut            4+4    id, iteration annular: which cut made v, and when (exemption from (3))
 //   rings          48+2   id            transformations (kernels/ring.h)
@@ -41,6 +42,7 @@ class Mesh {
   Buffer<Packed> packed;
   Buffer<float> path;
   Buffer<uint8_t> idle;
+  Buffer<uint8_t> risk;
   Buffer<uint8_t> operations;
   Buffer<uint32_t> cut_id;
   Buffer<uint32_t> cut_iteration;

@@ -1,27 +1,77 @@
 #include "engine/motion_guard.h"
 
-#include "engine/self_meeting.h"
+#include <algorithm>
+
+#include "engine/constants.h"
+#include "engine/edge.h"
 
 namespace plc {
 
-int64_t MotionGuard::take_back(const Buffer<Packed>& before) {
+namespace {
+
+constexpr size_t kChunk = 256;  // vertices per task
+
+}  // namespace
+
+int64_t MotionGuard::take_back(const Buffer<Packed>& before, const std::vector<uint32_t>& due,
+                               SpatialHash& hash) {
+  assess(due, hash);
   int64_t taken_back = 0;
-  for (;;) {
-    const auto meeting = meeting_faces(mesh_, executor_);
-    int64_t now = 0;
-    for (const auto& face : meeting) {
-      for (const uint32_t v : face) {
-        const Packed& b = before[v];
-        const Packed& p = mesh_.packed[v];
-        mesh_.velocity.set(v, {});
-        if (b.x == p.x && b.y == p.y && b.z == p.z) continue;
-        mesh_.place(v, {b.x, b.y, b.z});
-        ++now;
-      }
+  for (int64_t now = 1; now != 0; taken_back += now) {
+    now = 0;
+    const auto& pairs = search_.find(mesh_.rings(), mesh_.slots(), mesh_.packed.data(),
+                                     mesh_.risk.data(), executor_);
+    for (const auto& [f, g] : pairs) {
+      now += put_back(search_.face(f), before, hash) + put_back(search_.face(g), before, hash);
     }
-    if (now == 0) return taken_back;
-    taken_back += now;
   }
+  return taken_back;
+}
+
+// Returns how many of the face's vertices were not where they had been.
+int64_t MotionGuard::put_back(const uint32_t* face, const Buffer<Packed>& before,
+                              SpatialHash& hash) {
+  int64_t count = 0;
+  for (int i = 0; i < 3; ++i) {
+    const uint32_t v = face[i];
+    const Packed& b = before[v];
+    const Packed& p = mesh_.packed[v];
+    mesh_.velocity.set(v, {});
+    if (b.x == p.x && b.y == p.y && b.z == p.z) continue;
+    mesh_.place(v, {b.x, b.y, b.z});
+    hash.insert(v, mesh_.at(v));
+    ++count;
+  }
+  return count;
+}
+
+void MotionGuard::assess(const std::vector<uint32_t>& due, const SpatialHash& hash) {
+  // Normals of the movement's start are at hand for all: sheets do not turn over in a step.
+  const size_t chunks = (due.size() + kChunk - 1) / kChunk;
+  executor_.run(chunks, [&](size_t chunk) {
+    const size_t end = std::min((chunk + 1) * kChunk, due.size());
+    for (size_t i = chunk * kChunk; i < end; ++i) {
+      mesh_.risk[due[i]] = at_risk(due[i], hash) ? 1 : 0;
+    }
+  });
+}
+
+bool MotionGuard::at_risk(uint32_t v, const SpatialHash& hash) const {
+  const Vec3 p = mesh_.at(v);
+  const Vec3 n = mesh_.normal.at(v);
+  const Neighbors ring = mesh_.ring(v);
+  for (uint32_t k = 0; k < ring.size(); ++k) {
+    const Vec3 area = area_vector(p, mesh_.at(ring[k]), mesh_.at(ring.next(k)));
+    if (dot(area, n) <= kRiskDot * length(area)) return true;
+  }
+  const float reach = kRiskReach * static_cast<float>(mesh_.delta);
+  const Vec3 span{reach, reach, reach};
+  bool risk = false;
+  hash.visit_box(mesh_, p - span, p + span, [&](uint32_t w, Vec3 q) {
+    if (risk || w == v || squared_distance(p, q) > reach * reach) return;
+    risk = dot(n, mesh_.normal.at(w)) <= kRiskDot && !ring.contains(w);
+  });
+  return risk;
 }
 
 }  // namespace plc

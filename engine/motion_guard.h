@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/meeting_search.h"
 #include "engine/mesh.h"
+#include "engine/spatial_hash.h"
 #include "pyramid/executor.h"
 
 namespace plc {
@@ -11,16 +13,33 @@ namespace plc {
 // The surface before a movement does not meet itself. Where it does after it, the vertices of the
 // faces that meet go back to where they were and lose their speed; again, until none meet: in the
 // worst case all are back where they started.
+//
+// Only faces with a vertex at risk are tested. Two faces that meet share a vertex around which the
+// surface folds, or each has a corner within kRiskReach of the other's: an edge of one pierces the
+// other, and is at most half its length from the piercing point, as a corner of the pierced face is
+// at most 1/sqrt 3 of its longest edge. There a vertex is at risk when
+//   - the normal of one of its faces is turned by more than kRiskDot against its own, or
+//   - a vertex within kRiskReach that is no neighbour has a normal turned by more than that.
+// Parts whose normals agree are one sheet, or the outer two of three sheets, the middle one of which
+// is at risk with both. Like the constraints, the risk of a vertex is looked at when it is due.
 class MotionGuard {
  public:
   MotionGuard(Mesh& mesh, const Executor& executor) : mesh_(mesh), executor_(executor) {}
-  void restart() {}
-  // `before`: the positions before the movement, by id. Returns the number of vertices taken back.
-  int64_t take_back(const Buffer<Packed>& before);
+
+  // `before`: the positions before the movement, by id. `due`: the vertices whose risk is to be
+  // looked at again; all others keep theirs. The hash holds every vertex where it is now and learns
+  // of those that go back. Returns the number of vertices taken back.
+  int64_t take_back(const Buffer<Packed>& before, const std::vector<uint32_t>& due,
+                    SpatialHash& hash);
 
  private:
+  void assess(const std::vector<uint32_t>& due, const SpatialHash& hash);
+  bool at_risk(uint32_t v, const SpatialHash& hash) const;
+  int64_t put_back(const uint32_t* face, const Buffer<Packed>& before, SpatialHash& hash);
+
   Mesh& mesh_;
   const Executor& executor_;
+  MeetingSearch search_;
 };
 
 }  // namespace plc

@@ -47,13 +47,12 @@ void Resolution::restart() {
   tiny_.start(mesh_);
 }
 
-void Resolution::run(uint32_t iteration, bool check_all, OperationCounts& counts) {
+void Resolution::run(uint32_t iteration, OperationCounts& counts) {
   iteration_ = iteration;
   changed_.clear();
   stamp_.resize(mesh_.slots(), 0);
   claim_.resize(mesh_.slots(), 0);
-  take_due(check_all);
-  hash_.build(mesh_, kMinApart * static_cast<float>(mesh_.delta), executor_);
+  queue_violated_edges();
   for (int pass = 0; pass < kMaxAxialPasses; ++pass) {
     resolve_edges(counts);
     if (!resolve_pairs(counts)) break;
@@ -68,9 +67,8 @@ void Resolution::run(uint32_t iteration, bool check_all, OperationCounts& counts
   counts.tetrahedron += tiny_.update(mesh_, changed_);
 }
 
-// The slow-vertex heuristic (3.6).
-void Resolution::take_due(bool check_all) {
-  edge_queue_.clear();
+const std::vector<uint32_t>& Resolution::take_due(bool check_all) {
+  hash_.build(mesh_, kMinApart * static_cast<float>(mesh_.delta), executor_);
   pair_queue_.clear();
   const float far = kCheckPath * static_cast<float>(mesh_.delta);
   for (uint32_t v = 0; v < mesh_.slots(); ++v) {
@@ -84,6 +82,11 @@ void Resolution::take_due(bool check_all) {
     mesh_.idle[v] = 0;
     pair_queue_.push_back(v);
   }
+  return pair_queue_;
+}
+
+void Resolution::queue_violated_edges() {
+  edge_queue_.clear();
   const auto delta = static_cast<float>(mesh_.delta);
   flags_.resize_uninitialized(mesh_.padded());
   const uint32_t n = mesh_.padded();

@@ -22,14 +22,15 @@ class Resolution {
 
   // Everything that is known about single vertices is forgotten: new ids, new level.
   void restart();
-  // One pass of figure 9 over the vertices that are due for a check (all of them: check_all).
-  void run(uint32_t iteration, bool check_all, OperationCounts& counts);
-
-  // The hash as of the last run; holds every living vertex.
-  const SpatialHash& hash() const { return hash_; }
+  // The vertices that are due for a check by the slow-vertex rule (3.6) - all of them: check_all -
+  // in ascending order; their periods start anew. Also builds the hash of all vertices.
+  const std::vector<uint32_t>& take_due(bool check_all);
+  SpatialHash& hash() { return hash_; }
+  // One pass of figure 9 over the vertices that take_due() returned.
+  void run(uint32_t iteration, OperationCounts& counts);
 
  private:
-  void take_due(bool check_all);
+  void queue_violated_edges();
   void resolve_edges(OperationCounts& counts);
   bool resolve_pairs(OperationCounts& counts);
   std::vector<Candidate> edge_candidates(const std::vector<uint32_t>& queue);
