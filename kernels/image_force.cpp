@@ -42,16 +42,22 @@ HWY_INLINE Floats lerp(Floats a, Floats b, Floats t) {
   return hn::Add(a, hn::Mul(hn::Sub(b, a), t));
 }
 
-// Two voxels along x in each of two rows of a plane, per lane: 8-byte loads, not gathers.
-struct Corners {
-  Floats x0y0, x1y0, x0y1, x1y1;
+// The four voxels of a cell in one plane: two 8-byte loads, which cost less than gathers.
+struct CellQuads {
+  const float* plane;
+  int32_t row;
+  const int32_t* offset;  // of each lane's cell
+  HWY_INLINE Quad operator()(uint32_t lane) const {
+    const hn::Half<QuadTag> pair;
+    const float* cell = plane + offset[lane];
+    return hn::Combine(QuadTag(), hn::LoadU(pair, cell + row), hn::LoadU(pair, cell));
+  }
 };
-HWY_INLINE Corners load_corners(const float* plane, int32_t row, const int32_t* offset) {
-  const FloatTag d;
-  return {hn::GatherIndex(d, plane, hn::Load(IntTag(), offset)),
-          hn::GatherIndex(d, plane + 1, hn::Load(IntTag(), offset)),
-          hn::GatherIndex(d, plane + row, hn::Load(IntTag(), offset)),
-          hn::GatherIndex(d, plane + row + 1, hn::Load(IntTag(), offset))};
+
+// Bilinear in the plane of voxels: x, then y.
+HWY_INLINE Floats sample_plane(const CellQuads& cells, Floats x, Floats y) {
+  const Floats4 quad = load_transposed(cells);
+  return lerp(lerp(quad.x, quad.y, x), lerp(quad.z, quad.w, x), y);
 }
 
 HWY_INLINE Floats sample(const ImageView& image, const Floats3& p) {
@@ -65,13 +71,9 @@ HWY_INLINE Floats sample(const ImageView& image, const Floats3& p) {
       x.index, hn::Add(hn::Mul(y.index, hn::Set(di, row)), hn::Mul(z.index, hn::Set(di, plane))));
   alignas(64) int32_t offsets[kLanes];
   hn::Store(offset, di, offsets);
-  const Corners z0 = load_corners(image.data, row, offsets);
-  const Corners z1 = load_corners(image.data + plane, row, offsets);
-  const Floats at_z0 =
-      lerp(lerp(z0.x0y0, z0.x1y0, x.fraction), lerp(z0.x0y1, z0.x1y1, x.fraction), y.fraction);
-  const Floats at_z1 =
-      lerp(lerp(z1.x0y0, z1.x1y0, x.fraction), lerp(z1.x0y1, z1.x1y1, x.fraction), y.fraction);
-  return lerp(at_z0, at_z1, z.fraction);
+  const Floats below = sample_plane({image.data, row, offsets}, x.fraction, y.fraction);
+  const Floats above = sample_plane({image.data + plane, row, offsets}, x.fraction, y.fraction);
+  return lerp(below, above, z.fraction);
 }
 
 void sample_trilinear(const ImageView& image, const Packed* position, uint32_t begin, uint32_t end,

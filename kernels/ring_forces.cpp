@@ -166,8 +166,9 @@ struct NormalSum {
       return;
     }
     sum = sum + where(has_slot, cross(last, edge));
-    last = {hn::IfThenElse(has_slot, edge.x, last.x), hn::IfThenElse(has_slot, edge.y, last.y),
-            hn::IfThenElse(has_slot, edge.z, last.z)};
+    last.x = hn::IfThenElse(has_slot, edge.x, last.x);
+    last.y = hn::IfThenElse(has_slot, edge.y, last.y);
+    last.z = hn::IfThenElse(has_slot, edge.z, last.z);
   }
 };
 

@@ -20,6 +20,15 @@ using scalar::reduce_y;
 using scalar::reduce_z;
 #else
 
+// Values column .. column + 3 of each row.
+struct RowQuads {
+  const float* const* row;
+  size_t column;
+  HWY_INLINE Quad operator()(uint32_t lane) const {
+    return hn::LoadU(QuadTag(), row[lane] + column);
+  }
+};
+
 // Columns of up to kLanes rows: value c of row l goes to columns[c * kLanes + l]. Lanes past the
 // last row repeat it.
 HWY_INLINE void transpose_rows(const float* in, size_t width, size_t in_stride, size_t rows,
@@ -35,7 +44,7 @@ HWY_INLINE void transpose_rows(const float* in, size_t width, size_t in_stride, 
   }
   for (size_t next = 0; next < width; next += 4) {
     const size_t c = std::min(next, width - 4);  // the last four may overlap: nothing is read past
-    const Floats4 four = load_transposed([&](uint32_t l) { return row[l] + c; });
+    const Floats4 four = load_transposed(RowQuads{row, c});
     hn::Store(four.x, d, columns + c * kLanes);
     hn::Store(four.y, d, columns + (c + 1) * kLanes);
     hn::Store(four.z, d, columns + (c + 2) * kLanes);
@@ -59,7 +68,7 @@ template <int32_t kTaps>
 void reduce_x_taps(const TapsView& taps, size_t outputs, const float* columns, size_t rows,
                    float* out, size_t out_stride) {
   const FloatTag d;
-  const hn::CappedTag<float, 4> d4;
+  const QuadTag d4;
   for (size_t i = 0; i < outputs; i += 4) {
     const size_t count = std::min<size_t>(4, outputs - i);
     alignas(64) float quad[4 * kLanes];

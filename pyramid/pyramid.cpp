@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
 #include <cstddef>
 #include <cstdio>
 #include <new>
+#include <string>
+#include <utility>
 
 #include "pyramid/base_image.h"
 #include "pyramid/reduction.h"
@@ -18,16 +19,16 @@ namespace {
 constexpr int64_t kMaxVoxels = int64_t{1} << 31;  // voxel indices are 32-bit in the kernels
 constexpr int64_t kMinDim = 2;                    // a cell of the interpolation needs two voxels
 
-[[gnu::format(printf, 2, 3)]] Status error(ErrorCode code, const char* format, ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return {code, text};
+std::string number(double value, int digits = 6) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
 }
 
-using LongLong = long long;  // what %lld prints
+std::string voxels_text(const std::array<int64_t, 3>& dims) {
+  return std::to_string(dims[0]) + " x " + std::to_string(dims[1]) + " x " +
+         std::to_string(dims[2]) + " voxels";
+}
 
 int64_t reduced(int64_t dim, double reduction) {
   return static_cast<int64_t>(std::floor(static_cast<double>(dim) / reduction));
@@ -35,50 +36,50 @@ int64_t reduced(int64_t dim, double reduction) {
 
 Status check_volume(const VolumeView& volume) {
   if (volume.voxels == nullptr) {
-    return error(ErrorCode::kInvalidArgument, "volume: voxels is null, expected the image's data");
+    return {ErrorCode::kInvalidArgument, "volume: voxels is null, expected the image's data"};
   }
   if (voxel_size(volume.type) == 0) {
-    return error(ErrorCode::kInvalidArgument, "volume: voxel type %d is not known",
-                 static_cast<int>(volume.type));
+    return {
+        ErrorCode::kInvalidArgument,
+        "volume: voxel type " + std::to_string(static_cast<int>(volume.type)) + " is not known"};
   }
   for (const int64_t dim : volume.dims) {
     if (dim >= kMinDim && dim < kMaxVoxels) continue;
-    return error(ErrorCode::kInvalidData,
-                 "image of %lld x %lld x %lld voxels: expected at least %lld on every axis, fewer "
-                 "than 2^31 in all",
-                 static_cast<LongLong>(volume.dims[0]), static_cast<LongLong>(volume.dims[1]),
-                 static_cast<LongLong>(volume.dims[2]), static_cast<LongLong>(kMinDim));
+    return {ErrorCode::kInvalidData, "image of " + voxels_text(volume.dims) +
+                                         ": expected at least 2 on every axis, fewer than 2^31 in "
+                                         "all"};
   }
   for (const double spacing : volume.spacing) {
     if (std::isfinite(spacing) && spacing > 0.0) continue;
-    return error(ErrorCode::kInvalidData,
-                 "spacing %g x %g x %g mm: expected finite sizes greater than 0", volume.spacing[0],
-                 volume.spacing[1], volume.spacing[2]);
+    return {ErrorCode::kInvalidData,
+            "spacing " + number(volume.spacing[0]) + " x " + number(volume.spacing[1]) + " x " +
+                number(volume.spacing[2]) + " mm: expected finite sizes greater than 0"};
   }
   return {};
 }
 
 Status check_spec(const PyramidSpec& spec) {
   if (!(spec.reduction > 1.0 && spec.reduction <= 2.0)) {
-    return error(ErrorCode::kInvalidArgument, "reduction %.6g: expected more than 1 and at most 2",
-                 spec.reduction);
+    return {ErrorCode::kInvalidArgument,
+            "reduction " + number(spec.reduction) + ": expected more than 1 and at most 2"};
   }
   if (spec.levels < 0) {
-    return error(ErrorCode::kInvalidArgument, "levels %d: expected 0 or more", spec.levels);
+    return {ErrorCode::kInvalidArgument,
+            "levels " + std::to_string(spec.levels) + ": expected 0 or more"};
   }
   const double width = spec.window_high - spec.window_low;
   if (!(width > 0.0) || !std::isfinite(width) || !std::isfinite(1.0 / width)) {
-    return error(ErrorCode::kInvalidArgument,
-                 "window %g .. %g: expected finite values, the first below the second",
-                 spec.window_low, spec.window_high);
+    return {ErrorCode::kInvalidArgument,
+            "window " + number(spec.window_low) + " .. " + number(spec.window_high) +
+                ": expected finite values, the first below the second"};
   }
   if (!std::isfinite(spec.pad_value)) {
-    return error(ErrorCode::kInvalidArgument, "pad value %g: expected a finite value",
-                 spec.pad_value);
+    return {ErrorCode::kInvalidArgument,
+            "pad value " + number(spec.pad_value) + ": expected a finite value"};
   }
   if (spec.pad_voxels < 0) {
-    return error(ErrorCode::kInvalidArgument, "padding of %d voxels: expected 0 or more",
-                 spec.pad_voxels);
+    return {ErrorCode::kInvalidArgument,
+            "padding of " + std::to_string(spec.pad_voxels) + " voxels: expected 0 or more"};
   }
   return {};
 }
@@ -86,19 +87,16 @@ Status check_spec(const PyramidSpec& spec) {
 Status check_size(const std::array<int64_t, 3>& padded, const PyramidSpec& spec) {
   const int64_t plane = padded[0] * padded[1];
   if (plane >= kMaxVoxels || plane * padded[2] >= kMaxVoxels) {
-    return error(ErrorCode::kInvalidData,
-                 "image of %lld x %lld x %lld voxels with its padding of %d: expected fewer than "
-                 "2^31 in all",
-                 static_cast<LongLong>(padded[0]), static_cast<LongLong>(padded[1]),
-                 static_cast<LongLong>(padded[2]), spec.pad_voxels);
+    return {ErrorCode::kInvalidData, "image of " + voxels_text(padded) + " with its padding of " +
+                                         std::to_string(spec.pad_voxels) +
+                                         ": expected fewer than 2^31 in all"};
   }
   const int most = max_levels(padded, spec.reduction);
   if (spec.levels > most) {
-    return error(ErrorCode::kInvalidArgument,
-                 "levels %d: too deep for an image of %lld x %lld x %lld voxels at reduction "
-                 "%.3g; at most %d",
-                 spec.levels, static_cast<LongLong>(padded[0]), static_cast<LongLong>(padded[1]),
-                 static_cast<LongLong>(padded[2]), spec.reduction, most);
+    return {ErrorCode::kInvalidArgument, "levels " + std::to_string(spec.levels) +
+                                             ": too deep for an image of " + voxels_text(padded) +
+                                             " at reduction " + number(spec.reduction, 3) +
+                                             "; at most " + std::to_string(most)};
   }
   return {};
 }
@@ -133,10 +131,13 @@ bool fill_level(const PyramidLevel& from, const Executor& executor, SimdTarget s
                       to.values.data());
 }
 
+Status out_of_memory(const PyramidSpec& spec) {
+  return {ErrorCode::kOutOfMemory,
+          "pyramid of " + std::to_string(spec.levels + 1) + " levels: out of memory"};
+}
+
 Status build_levels(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
                     SimdTarget simd, Pyramid& pyramid) {
-  const Status out_of_memory =
-      error(ErrorCode::kOutOfMemory, "pyramid of %d levels: out of memory", spec.levels + 1);
   try {
     pyramid.levels.reserve(static_cast<size_t>(spec.levels) + 1);
     PyramidLevel base;
@@ -151,11 +152,11 @@ Status build_levels(const VolumeView& volume, const PyramidSpec& spec, const Exe
     pyramid.levels.push_back(std::move(base));
     for (int h = 0; h < spec.levels; ++h) {
       PyramidLevel next = next_level(pyramid.levels.back(), spec.reduction);
-      if (!fill_level(pyramid.levels.back(), executor, simd, next)) return out_of_memory;
+      if (!fill_level(pyramid.levels.back(), executor, simd, next)) return out_of_memory(spec);
       pyramid.levels.push_back(std::move(next));
     }
   } catch (const std::bad_alloc&) {
-    return out_of_memory;
+    return out_of_memory(spec);
   }
   return {};
 }

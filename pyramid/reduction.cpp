@@ -37,7 +37,7 @@ struct Reduction {
     return static_cast<size_t>(taps[axis].first[begin]);
   }
   size_t end_input(size_t axis, size_t end) const {
-    return static_cast<size_t>(taps[axis].first[end - 1] + taps[axis].taps);
+    return first_input(axis, end - 1) + static_cast<size_t>(taps[axis].taps);
   }
 };
 
