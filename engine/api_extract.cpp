@@ -84,8 +84,9 @@ class Extraction {
                                            " voxels are NaN or infinite"};
     }
     const bool above = p.inside_below == 0;
-    const double inside = mean_inside(volume_, p.iso, above, context_.schedule);
-    if (Status s = derive_parameters(volume_, surface_->range, inside, p); !s.ok()) return s;
+    if (Status s = derive_parameters(volume_, surface_->range, context_.schedule, p); !s.ok()) {
+      return s;
+    }
     if (Status s = build_pyramid(volume_, pyramid_spec(p), context_.schedule, context_.simd,
                                  pyramid_);
         !s.ok()) {
@@ -100,7 +101,8 @@ class Extraction {
   void choose_isos(bool above) {
     plc_parameters& p = surface_->parameters;
     if (p.level_iso_count == 0) {
-      spec_.isos = volume_preserving_isos(pyramid_, normalised(p, p.iso), above);
+      spec_.isos = covering_isos(pyramid_, normalised(p, p.iso), above, context_.schedule,
+                                 context_.simd);
     } else {
       for (int h = 0; h <= p.levels; ++h) spec_.isos.push_back(normalised(p, p.level_iso[h]));
     }

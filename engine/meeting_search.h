@@ -1,82 +1,90 @@
-// The self-intersections that a step may have made: of the faces that moved, with all faces.
+// The faces of the engine's mesh that meet since some vertices moved; for asking in every step.
 #pragma once
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "engine/self_intersection.h"
-#include "engine/triangle_intersection.h"
 #include "kernels/ring.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
 
 namespace plc {
 
-// Made for the engine's mesh, whose faces are all of about one size, and for being asked in every
-// iteration: buffers are kept, and nothing is built over the faces that did not move. The moved
-// ones go into a uniform grid, in every cell that their boxes touch; then all faces pass by it.
+// Faces that share a vertex are looked at vertex by vertex (vertex_star.h), and one by one only
+// where that leaves a doubt. For all others there is a tree of boxes, 8 children to a node, over
+// the faces in the order of ids: vertices are numbered along a space-filling curve, so nothing has
+// to be sorted and boxes are tight; with any other numbering results are the same and searches
+// slow.
 //
-//   buffer      bytes per moved face   what
-//   unsorted    ~110 (32 per cell)     entries by partition of the table
-//   entries     ~110                   the same by cell
-//   begin       ~15                    where the entries of each cell begin; cells share places
+//   buffer    bytes per face   what
+//   faces     12               three ids, the smallest first, in order of Mesh::faces()
+//   begin     2                per vertex: its first face
+//   boxes     27.4             per node: boxes of 8 faces or nodes, lane by lane
+//   moved     0.3              per node: which of the 8 moved; which of the 8 moved altogether
 //
-// Not thread-safe: one search at a time.
+// Buffers are kept from call to call. Not thread-safe: one search at a time.
 class MeetingSearch {
  public:
-  // positions: by vertex id, finite; abc: three ids per face; moved: face indices, ascending, each
-  // once. max_edge > 0: about the longest edge; it sets the size of the cells, larger faces are
-  // found all the same. Returns the pairs (f, g), f < g, of which at least one moved and that meet
-  // (triangle_intersection.h: exact, faces of zero area left out), sorted, until the next call. The
-  // same for any executor.
-  const std::vector<FacePair>& find(const Packed* positions, const uint32_t* abc, size_t face_count,
-                                    const uint32_t* moved, size_t moved_count, float max_edge,
-                                    const Executor& executor);
+  // rings and positions of ids below `slots`; deleted vertices (valence 0) are skipped. moved: per
+  // id, not 0 where the vertex moved or its ring changed since the mesh was last known to be good;
+  // NULL: all did. Returns the pairs (f, g), f < g, of faces of which at least one has a moved
+  // vertex and that meet elsewhere than in what they share (triangle_intersection.h: exact, faces
+  // of zero area left out), sorted, until the next call. The same for any executor. The mesh is
+  // closed and a manifold.
+  const std::vector<FacePair>& find(const RingView& rings, uint32_t slots, const Packed* positions,
+                                    const uint8_t* moved, const Executor& executor);
+
+  // The faces of the last call.
+  size_t face_count() const { return faces_.size() / 3; }
+  const uint32_t* face(uint32_t f) const { return faces_.data() + 3 * static_cast<size_t>(f); }
 
  private:
-  // A moved face in one cell, 32 bytes. The box comes along: most entries end at it.
-  struct Entry {
+  static constexpr uint32_t kLanes = 8;
+  struct Box {
     float low[3], high[3];
-    uint32_t face;
-    uint32_t place;  // of its cell in the table
   };
-  struct Cells {
-    int32_t low[3], high[3];
+  struct alignas(64) Boxes {
+    float low[3][kLanes], high[3][kLanes];
   };
+  // Level 0: nodes of faces; level k: nodes of nodes of level k - 1.
+  struct Level {
+    Buffer<Boxes> boxes;
+    Buffer<uint8_t> any_moved, all_moved;  // a bit per child; all_moved also for lanes not used
+  };
+  struct Mesh {
+    RingView rings;
+    uint32_t slots;
+    const Packed* positions;
+    const uint8_t* moved;
+    bool has_moved(uint32_t v) const { return moved == nullptr || moved[v] != 0; }
+    bool has_moved(const uint32_t* abc) const {
+      return has_moved(abc[0]) || has_moved(abc[1]) || has_moved(abc[2]);
+    }
+  };
+  using Pairs = std::vector<FacePair>;
 
-  void place_grid(const Packed* positions, const uint32_t* abc, const uint32_t* moved, size_t count,
-                  float max_edge, const Executor& executor);
-  void fill(const Packed* positions, const uint32_t* abc, const uint32_t* moved, size_t count,
-            const Executor& executor);
-  void sort_partition(size_t partition);
-  void search_block(const Packed* positions, const uint32_t* abc, size_t begin, size_t end,
-                    const uint32_t* moved, const uint32_t* moved_end,
-                    std::vector<FacePair>& pairs) const;
+  static uint32_t overlapping(const Boxes& boxes, const Box& box);
+  static Box lane(const Boxes& boxes, uint32_t k);
+  static Box all_lanes(const Boxes& boxes);
+  static void set_lane(Boxes& boxes, uint32_t k, const Box& box);
 
-  // Never falls when x grows; so a point of two boxes lies in cells of both.
-  int32_t cell(int axis, float x) const {
-    return static_cast<int32_t>((x - origin_[axis]) * per_cell_);
-  }
-  Cells cells_of(const FaceBox& box) const;
-  uint32_t place(int32_t x, int32_t y, int32_t z) const {
-    return (static_cast<uint32_t>(x) + static_cast<uint32_t>(y) * stride_[0] +
-            static_cast<uint32_t>(z) * stride_[1]) &
-           mask_;
-  }
+  void list_faces(const Mesh& mesh, const Executor& executor);
+  void build_leaves(const Mesh& mesh, const Executor& executor);
+  void build_level(size_t level, const Executor& executor);
+  void search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) const;
+  void search_leaf(const Mesh& mesh, uint32_t leaf, Pairs& pairs) const;
+  void search_leaves(const Mesh& mesh, uint32_t leaf, const Box& box, uint32_t other,
+                     Pairs& pairs) const;
+  uint32_t index_of(uint32_t a, uint32_t b, uint32_t c) const;
 
-  FaceBox moved_box_{};  // of all moved faces: the grid's extent
-  float origin_[3] = {0, 0, 0};
-  float per_cell_ = 1;           // 1 / size of a cell
-  int32_t last_[3] = {0, 0, 0};  // the largest cell index of each axis
-  uint32_t stride_[2] = {1, 1};
-  uint32_t mask_ = 0;        // the table has mask_ + 1 places, a power of two
-  Buffer<uint32_t> counts_;  // [partition][block]: entries, then where they begin
-  Buffer<Entry> unsorted_;
-  Buffer<Entry> entries_;
-  Buffer<uint32_t> begin_;  // per place, and one more
-  std::vector<FaceBox> block_boxes_;
-  std::vector<std::vector<FacePair>> found_;
-  std::vector<FacePair> pairs_;
+  Buffer<uint32_t> faces_;
+  Buffer<uint32_t> begin_;  // per vertex, and one more
+  Buffer<uint32_t> block_faces_;
+  std::vector<Level> levels_;
+  size_t level_count_ = 0;
+  std::vector<Pairs> found_;
+  Pairs pairs_;
 };
 
 }  // namespace plc

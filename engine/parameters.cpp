@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "engine/constants.h"
+#include "engine/window.h"
 
 namespace plc {
 
@@ -100,8 +101,8 @@ Status check_parameters(const plc_parameters& p) {
   });
 }
 
-Status derive_parameters(const VolumeView& volume, const VoxelRange& range, double inside_level,
-                         plc_parameters& p) {
+Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
+                         const Executor& executor, plc_parameters& p) {
   const bool above = p.inside_below == 0;
   if (range.low == range.high) {
     return {ErrorCode::kInvalidData,
@@ -113,16 +114,10 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range, doub
     return {ErrorCode::kInvalidArgument, "iso " + text(p.iso) + ": outside the image's range " +
                                              text(range.low) + " .. " + text(range.high)};
   }
-  // The window reaches as far beyond the iso-value as the object does on the average, on both sides,
-  // so that attraction and repulsion balance; see README, choosing parameters.
-  const double contrast = std::max(std::abs(inside_level - p.iso), (range.high - range.low) * 1e-3);
-  if (std::isnan(p.window_low)) {
-    p.window_low = std::max(range.low, p.iso - 1.0 * contrast);
-    if (p.window_low >= p.iso) p.window_low = p.iso - contrast;
-  }
-  if (std::isnan(p.window_high)) {
-    p.window_high = std::min(range.high, p.iso + 1.0 * contrast);
-    if (p.window_high <= p.iso) p.window_high = p.iso + contrast;
+  if (std::isnan(p.window_low) || std::isnan(p.window_high)) {
+    const Window window = derive_window(volume, range, p.iso, above, executor);
+    if (std::isnan(p.window_low)) p.window_low = window.low;
+    if (std::isnan(p.window_high)) p.window_high = window.high;
   }
   if (!(p.window_low < p.iso && p.iso < p.window_high)) {
     return {ErrorCode::kInvalidArgument, "window " + text(p.window_low) + ", " +
@@ -143,39 +138,6 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range, doub
   if (p.levels < 0 && p.level_iso_count > 0) p.levels = p.level_iso_count - 1;
   if (p.levels < 0) p.levels = std::min(3, deepest);
   return {};
-}
-
-double mean_inside(const VolumeView& volume, double iso, bool inside_above,
-                   const Executor& executor) {
-  // Fixed slices, summed in order: the same bits for any executor.
-  const auto slices = static_cast<size_t>(volume.dims[2]);
-  const auto per_slice = static_cast<size_t>(volume.dims[0] * volume.dims[1]);
-  std::vector<double> sum(slices, 0);
-  std::vector<int64_t> count(slices, 0);
-  const auto scan = [&](const auto* voxels, size_t z) {
-    for (size_t i = z * per_slice; i < (z + 1) * per_slice; ++i) {
-      const auto value = static_cast<double>(voxels[i]);
-      if (inside_above ? value < iso : value > iso) continue;
-      sum[z] += value;
-      ++count[z];
-    }
-  };
-  executor.run(slices, [&](size_t z) {
-    switch (volume.type) {
-      case VoxelType::kU8: return scan(static_cast<const uint8_t*>(volume.voxels), z);
-      case VoxelType::kI16: return scan(static_cast<const int16_t*>(volume.voxels), z);
-      case VoxelType::kU16: return scan(static_cast<const uint16_t*>(volume.voxels), z);
-      case VoxelType::kI32: return scan(static_cast<const int32_t*>(volume.voxels), z);
-      case VoxelType::kF32: return scan(static_cast<const float*>(volume.voxels), z);
-    }
-  });
-  double total = 0;
-  int64_t n = 0;
-  for (size_t z = 0; z < slices; ++z) {
-    total += sum[z];
-    n += count[z];
-  }
-  return n == 0 ? iso : total / static_cast<double>(n);
 }
 
 PyramidSpec pyramid_spec(const plc_parameters& p) {

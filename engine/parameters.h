@@ -12,12 +12,8 @@ Status check_parameters(const plc_parameters& parameters);
 
 // Fills in what is NAN or -1: window, pad value, level count. `range` is that of the image.
 // Errors: kInvalidArgument, kInvalidData (constant or not finite image, iso outside the range).
-Status derive_parameters(const VolumeView& volume, const VoxelRange& range, double inside_level,
-                         plc_parameters& parameters);
-
-// The mean of the voxels on the object's side of iso.
-double mean_inside(const VolumeView& volume, double iso, bool inside_above,
-                   const Executor& executor);
+Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
+                         const Executor& executor, plc_parameters& parameters);
 
 // Image units to [0,1] of the window and back.
 inline double normalised(const plc_parameters& p, double value) {

@@ -1,80 +1,111 @@
-// Iso values that keep the object's volume on every level.
+// Iso values of the coarse levels that keep the object of I_0 in sight.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
+#include "kernels/image_force.h"
 #include "pyramid/pyramid.h"
 
 namespace plc {
 
 namespace {
 
-// Fine enough for 16-bit images over their whole range.
-constexpr size_t kBins = size_t{1} << 16;
+// Quantiles are linear inside a bin; one histogram per slice is kept while they are collected.
+constexpr size_t kBins = size_t{1} << 12;
 constexpr double kMargin = 0.5 / static_cast<double>(kBins);  // results stay in (0,1)
 
 double within(double iso) {
   return std::clamp(iso, kMargin, 1.0 - kMargin);
 }
 
-size_t count_inside(const Buffer<float>& values, float iso, bool inside_above) {
-  size_t count = 0;
-  if (inside_above) {
-    for (const float v : values) count += v >= iso ? 1 : 0;
-  } else {
-    for (const float v : values) count += v <= iso ? 1 : 0;
+// A level as seen from the voxels of I_0: (10) for both.
+ImageView seen_from_base(const PyramidLevel& base, const PyramidLevel& level) {
+  ImageView view;
+  view.data = level.values.data();
+  for (size_t a = 0; a < 3; ++a) {
+    const double scale = base.voxel[a] / level.voxel[a];
+    view.dims[a] = static_cast<int32_t>(level.dims[a]);
+    view.scale[a] = static_cast<float>(scale);
+    view.offset[a] = static_cast<float>(0.5 * scale - 0.5);
   }
-  return count;
+  return view;
 }
 
-std::vector<uint32_t> histogram(const Buffer<float>& values) {
-  std::vector<uint32_t> bins(kBins, 0);
-  for (const float v : values) {
-    const auto bin = static_cast<size_t>(v * static_cast<float>(kBins));
-    ++bins[std::min(bin, kBins - 1)];
+// What the level shows at the centres of the object's voxels on I_0, by value.
+class ObjectHistogram {
+ public:
+  ObjectHistogram(const PyramidLevel& base, const PyramidLevel& level, float iso_0,
+                  bool inside_above, const Executor& executor, SimdTarget simd)
+      : slices_(static_cast<size_t>(base.dims[2]), std::vector<uint32_t>()) {
+    const ImageView view = seen_from_base(base, level);
+    executor.run(slices_.size(), [&](size_t z) {
+      std::vector<uint32_t>& bins = slices_[z];
+      std::vector<Packed> inside;
+      size_t i = z * static_cast<size_t>(base.dims[0] * base.dims[1]);
+      for (int64_t y = 0; y < base.dims[1]; ++y) {
+        for (int64_t x = 0; x < base.dims[0]; ++x, ++i) {
+          const float v = base.values[i];
+          if (inside_above ? v < iso_0 : v > iso_0) continue;
+          inside.push_back(
+              {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0});
+        }
+      }
+      if (inside.empty()) return;
+      std::vector<float> values(inside.size());
+      kernels::sample_trilinear(simd, view, inside.data(), 0, static_cast<uint32_t>(inside.size()),
+                                values.data());
+      bins.assign(kBins, 0);
+      for (const float v : values) {
+        ++bins[std::min(static_cast<size_t>(v * static_cast<float>(kBins)), kBins - 1)];
+      }
+    });
+    merge();
   }
-  return bins;
-}
 
-// The value below which `below` voxels lie, linear inside a bin.
-double quantile(const std::vector<uint32_t>& bins, double below) {
-  double before = 0;
-  for (size_t b = 0; b < kBins; ++b) {
-    if (bins[b] == 0) continue;
-    const double count = bins[b];
-    if (before + count >= below) {
-      const double part = std::max(0.0, below - before) / count;
-      return (static_cast<double>(b) + part) / static_cast<double>(kBins);
+  // The value below which `part` of the voxels lie, linear inside a bin; NAN without voxels.
+  double quantile(double part) const {
+    const double below = part * static_cast<double>(total_);
+    double before = 0;
+    for (size_t b = 0; b < kBins && total_ != 0; ++b) {
+      const auto count = static_cast<double>(bins_[b]);
+      if (count > 0 && before + count >= below) {
+        return (static_cast<double>(b) + std::max(0.0, below - before) / count) /
+               static_cast<double>(kBins);
+      }
+      before += count;
     }
-    before += count;
+    return NAN;
   }
-  return 1.0;
-}
+
+ private:
+  void merge() {
+    bins_.assign(kBins, 0);
+    for (const auto& slice : slices_) {
+      for (size_t b = 0; b < slice.size(); ++b) bins_[b] += slice[b];
+    }
+    for (const uint64_t n : bins_) total_ += n;
+    slices_.clear();
+  }
+
+  std::vector<std::vector<uint32_t>> slices_;
+  std::vector<uint64_t> bins_;
+  uint64_t total_ = 0;
+};
 
 }  // namespace
 
-std::vector<double> volume_preserving_isos(const Pyramid& pyramid, double iso_0,
-                                           bool inside_above) {
+std::vector<double> covering_isos(const Pyramid& pyramid, double iso_0, bool inside_above,
+                                  const Executor& executor, SimdTarget simd) {
   std::vector<double> isos(pyramid.levels.size(), within(iso_0));
-  if (isos.empty()) return isos;
-  isos[0] = iso_0;
-  if (isos.size() == 1) return isos;
-  const Buffer<float>& base = pyramid.levels[0].values;
-  const size_t inside = count_inside(base, static_cast<float>(iso_0), inside_above);
-  if (inside == 0 || inside == base.size()) return isos;  // no surface on I_0: nothing to keep
-  const size_t below = inside_above ? base.size() - inside : inside;
   for (size_t h = 1; h < isos.size(); ++h) {
-    const Buffer<float>& values = pyramid.levels[h].values;
-    const std::vector<uint32_t> bins = histogram(values);
-    if (*std::max_element(bins.begin(), bins.end()) == values.size()) continue;  // one value only
-    // All values that keep the volume to half a voxel, or to half of what is left of it, are as
-    // good: of them the nearest to iso_0 is the steadiest choice where the histogram is empty, as
-    // between the two values of a mask.
-    const auto voxels = static_cast<double>(values.size());
-    const double wanted = static_cast<double>(below) * voxels / static_cast<double>(base.size());
-    const double slack = 0.5 * std::min({1.0, wanted, voxels - wanted});
-    isos[h] =
-        within(std::clamp(iso_0, quantile(bins, wanted - slack), quantile(bins, wanted + slack)));
+    const ObjectHistogram histogram(pyramid.levels[0], pyramid.levels[h], static_cast<float>(iso_0),
+                                    inside_above, executor, simd);
+    const double least = histogram.quantile(inside_above ? kUncoveredPart : 1.0 - kUncoveredPart);
+    if (std::isnan(least)) continue;  // no object on I_0
+    // Never on the far side of iso_0: there the coarse object would lose what shows anyway.
+    isos[h] = within(inside_above ? std::min(least, iso_0) : std::max(least, iso_0));
   }
   return isos;
 }

@@ -49,9 +49,15 @@ int max_levels(const std::array<int64_t, 3>& padded_dims, double reduction);
 Status build_pyramid(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
                      SimdTarget simd, Pyramid& pyramid);
 
-// The iso value of each level at which the part of the image at or above it (inside_above) or at or
-// below it has the volume that it has on I_0 at iso_0, both in [0,1]; result[0] == iso_0. What
-// fades on a coarse level keeps its volume this way. Kept within (0,1).
-std::vector<double> volume_preserving_isos(const Pyramid& pyramid, double iso_0, bool inside_above);
+// The part of the object that a coarse level may lose from sight; see covering_isos.
+inline constexpr double kUncoveredPart = 0.02;
+
+// The iso value of each level, in [0,1]: that of I_0, and on a coarse level the one nearest to it at
+// which the level's object (>= iso when inside_above, else <= iso) still holds the centres of all but
+// kUncoveredPart of the voxels of the object on I_0. Thin parts fade on coarse levels (4.2, 5.3):
+// at one value for all they would be lost there, and a surface that has shrunk past a part does not
+// come back to it. result[0] == iso_0; all lie in (0,1). The same for any executor and target.
+std::vector<double> covering_isos(const Pyramid& pyramid, double iso_0, bool inside_above,
+                                  const Executor& executor, SimdTarget simd);
 
 }  // namespace plc

@@ -1,0 +1,23 @@
+// The grey-level window derived from the image: what is mapped to 0 and 1 around the iso-value.
+#pragma once
+#include "kernels/simd.h"
+#include "pyramid/executor.h"
+#include "pyramid/pyramid.h"
+#include "pyramid/volume.h"
+
+namespace plc {
+
+struct Window {
+  double low, high;
+};
+
+// Typical values on either side of the iso-surface are the medians of the voxels of the object that
+// have a voxel outside it for a face neighbour, and of the latter. The window reaches beyond the
+// iso-value by kWindowReach times as much as they do, and not beyond the image's range: (7) then
+// attracts about as strongly from outside as from inside, whatever else is in the image, and nothing
+// that decides where the surface lies is clipped. `range` is that of the image. The same for any
+// executor.
+Window derive_window(const VolumeView& volume, const VoxelRange& range, double iso,
+                     bool inside_above, const Executor& executor);
+
+}  // namespace plc
