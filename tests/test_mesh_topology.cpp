@@ -20,8 +20,8 @@ plc::MeshTopology topology(const std::vector<uint32_t>& abc, size_t vertices) {
 TEST_CASE("the edge table lists every edge once with all its uses in order", "[mesh_topology]") {
   std::mt19937 bits(1);
   constexpr uint32_t kVertices = 40;
-  std::vector<uint32_t> abc;
-  for (int i = 0; i < 3 * 200; ++i) abc.push_back(static_cast<uint32_t>(bits() % kVertices));
+  std::vector<uint32_t> abc(3 * 200);
+  for (uint32_t& v : abc) v = static_cast<uint32_t>(bits() % kVertices);
   std::map<std::pair<uint32_t, uint32_t>, std::vector<uint32_t>> want;
   for (uint32_t c = 0; c < abc.size(); ++c) {
     const uint32_t f = c / 3 * 3;
