@@ -32,11 +32,17 @@ inline std::vector<float> flatten(const std::vector<plc::Packed>& records) {
   return all;
 }
 
+// Not the distributions of the standard library: golden values must not depend on whose it is.
+inline float random_float(std::mt19937& random, float low, float high) {
+  return low + (high - low) * (static_cast<float>(random() >> 8) / 16777216.0F);
+}
+inline uint32_t random_integer(std::mt19937& random, uint32_t low, uint32_t high) {
+  return low + static_cast<uint32_t>(random() % (high - low + 1));
+}
 inline std::vector<float> random_floats(size_t count, float low, float high, uint32_t seed) {
   std::mt19937 random(seed);
-  std::uniform_real_distribution<float> value(low, high);
   std::vector<float> values(count);
-  for (float& v : values) v = value(random);
+  for (float& v : values) v = random_float(random, low, high);
   return values;
 }
 
@@ -57,15 +63,16 @@ class RandomRings {
     std::mt19937 random(seed);
     const auto count = static_cast<uint32_t>(rings.size());
     for (uint32_t v = 0; v < count; ++v) valence_[v] = static_cast<uint16_t>(valence_of(v, random));
-    std::uniform_int_distribution<uint32_t> any(0, count - 1);
     for (uint32_t v = 0; v < count; ++v) {
       while (rings[v].size() < valence_[v]) {
-        const uint32_t u = any(random);
+        const uint32_t u = random_integer(random, 0, count - 1);
         if (u != v && valence_[u] != 0) rings[v].push_back(u);
       }
     }
-    std::uniform_real_distribution<float> place(-40.0F, 250.0F);
-    for (plc::Packed& p : position) p = {place(random), place(random), place(random), 0.0F};
+    for (plc::Packed& p : position) {
+      for (float* c : {&p.x, &p.y, &p.z}) *c = random_float(random, -40.0F, 250.0F);
+      p.w = 0;
+    }
     lay_out();
   }
 
@@ -102,10 +109,9 @@ class RandomRings {
 // Dead vertices, common valences and long tails side by side.
 inline RandomRings mixed_rings(uint32_t blocks, uint32_t seed) {
   return {blocks, seed, [](uint32_t v, std::mt19937& random) {
-            std::uniform_int_distribution<uint32_t> common(3, 10), long_tail(12, 30);
             if (v % 7 == 3) return 0U;
             if (v % 16 == 6) return plc::kRingSlots;  // the longest ring that needs no tail
-            return v % 16 == 5 ? long_tail(random) : common(random);
+            return v % 16 == 5 ? random_integer(random, 12, 30) : random_integer(random, 3, 10);
           }};
 }
 

@@ -232,7 +232,7 @@ TEST_CASE("an edge as long as a limit violates it", "[kernels]") {
 
 TEST_CASE("edge violations are found in columns and tails alike", "[kernels]") {
   const RandomRings rings = mixed_rings(10, 7);
-  const float min_squared = 40.0F * 40.0F, max_squared = 320.0F * 320.0F;
+  const float min_squared = 25.0F * 25.0F, max_squared = 370.0F * 370.0F;
   int tails_alone = 0;
   for (const SimdTarget simd : plc::available_simd_targets()) {
     for (const auto& [begin, end] : kRanges) {
@@ -245,8 +245,8 @@ TEST_CASE("edge violations are found in columns and tails alike", "[kernels]") {
         int expected = 0, columns_only = 0;
         for (size_t k = 0; k < rings.rings[v].size(); ++k) {
           const double edge = length(at(rings, rings.rings[v][k]) - at(rings, v));
-          expected |= edge <= 40.0 ? 1 : 0;
-          expected |= edge >= 320.0 ? 2 : 0;
+          expected |= edge <= 25.0 ? 1 : 0;
+          expected |= edge >= 370.0 ? 2 : 0;
           if (k < plc::kRingSlots) columns_only = expected;
         }
         if (v < begin || v >= end) expected = 9;
