@@ -268,6 +268,10 @@ const std::vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t
                                                  const Executor& executor) {
   const Mesh mesh{rings, slots, positions, moved};
   pairs_.clear();
+  faces_.clear();
+  if (moved != nullptr && std::all_of(moved, moved + slots, [](uint8_t m) { return m == 0; })) {
+    return pairs_;
+  }
   list_faces(mesh, executor);
   if (face_count() == 0) return pairs_;
   build_leaves(mesh, executor);

@@ -35,7 +35,7 @@ class MeetingSearch {
   const std::vector<FacePair>& find(const RingView& rings, uint32_t slots, const Packed* positions,
                                     const uint8_t* moved, const Executor& executor);
 
-  // The faces of the last call.
+  // The faces of the last call; none where nothing had moved.
   size_t face_count() const { return faces_.size() / 3; }
   const uint32_t* face(uint32_t f) const { return faces_.data() + 3 * static_cast<size_t>(f); }
 
