@@ -1,0 +1,18 @@
+// `pellicle check`: what a mesh is, and whether it is a valid surface.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace plc::tools {
+
+struct CheckOptions {
+  std::string mesh;
+  bool json = false;
+};
+
+void add_check_options(CLI::App& command, CheckOptions& options);
+
+// Returns the exit code: 1 when the mesh is not valid. Throws Failure.
+int run_check(const CheckOptions& options);
+
+}  // namespace plc::tools

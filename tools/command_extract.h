@@ -1,0 +1,10 @@
+// `pellicle extract`: a surface out of a volume.
+#pragma once
+#include "tools/extract_options.h"
+
+namespace plc::tools {
+
+// Returns the exit code. Throws Failure.
+int run_extract(const ExtractOptions& options);
+
+}  // namespace plc::tools

@@ -1,0 +1,222 @@
+#include "tools/extract_options.h"
+
+#include <algorithm>
+#include <functional>
+
+namespace plc::tools {
+
+const Choices<plc_space> kSpaces = {
+    {"lps", PLC_SPACE_LPS}, {"ras", PLC_SPACE_RAS}, {"voxel", PLC_SPACE_VOXEL}};
+const Choices<plc_bound> kBounds = {{"clamp", PLC_BOUND_CLAMP}, {"scale", PLC_BOUND_SCALE}};
+const Choices<plc_anisotropy> kAnisotropies = {{"physical", PLC_ANISOTROPY_PHYSICAL},
+                                               {"voxel", PLC_ANISOTROPY_VOXEL}};
+const Choices<int> kInsides = {{"above", 0}, {"below", 1}};
+
+namespace {
+
+const Choices<plc_simd> kSimds = {{"auto", PLC_SIMD_AUTO},
+                                  {"scalar", PLC_SIMD_SCALAR},
+                                  {"sse4", PLC_SIMD_SSE4},
+                                  {"avx2", PLC_SIMD_AVX2},
+                                  {"avx512", PLC_SIMD_AVX512}};
+
+const Choices<plc_rest_length> kRestLengths = {{"zero", PLC_REST_ZERO}, {"mean", PLC_REST_MEAN}};
+
+template <typename T>
+std::string names_of(const Choices<T>& choices) {
+  std::string names;
+  for (const auto& choice : choices)
+    names += (names.empty() ? "" : "|") + std::string(choice.first);
+  return names;
+}
+
+void read_rest_length(const std::string& text, plc_parameters& p) {
+  for (const auto& [name, mode] : kRestLengths) {
+    if (text == name) {
+      p.rest_length = mode;
+      return;
+    }
+  }
+  double value = 0;
+  try {
+    value = to_number("--rest-length", text);
+  } catch (const CLI::ValidationError&) {
+    refuse_value("--rest-length", text, "zero, mean or a finite number");
+  }
+  p.rest_length = PLC_REST_VALUE;
+  p.rest_length_value = value;
+}
+
+void read_init(const std::string& text, plc_parameters& p) {
+  const std::string prefix = "bubbles=";
+  if (text == "bubble") {
+    p.init = PLC_INIT_BUBBLE;
+  } else if (text.rfind(prefix, 0) == 0) {
+    p.init = PLC_INIT_BUBBLES;
+    const auto n = to_integers("--init bubbles", text.substr(prefix.size()), 3);
+    std::copy(n.begin(), n.end(), p.bubbles);
+  } else {
+    refuse_value("--init", text, "bubble or bubbles=NX,NY,NZ");
+  }
+}
+
+// On the command line from coarse to fine; the engine wants I_0 first.
+void read_level_isos(const std::string& text, plc_parameters& p) {
+  const auto values = to_numbers("--level-iso", text, 0);
+  if (values.size() > PLC_MAX_LEVELS) {
+    refuse_value("--level-iso", text, "at most " + std::to_string(PLC_MAX_LEVELS) + " numbers");
+  }
+  std::reverse_copy(values.begin(), values.end(), p.level_iso);
+  p.level_iso_count = static_cast<int>(values.size());
+}
+
+class Declarations {
+ public:
+  Declarations(CLI::App& command, ExtractOptions& options)
+      : command_(command), options_(options), p_(options.parameters) {}
+
+  void files() {
+    command_
+        .add_option("INPUT", options_.input,
+                    "NIfTI, NRRD, MetaImage, TIFF stack, InVesalius .inv3, or a directory of "
+                    "DICOM slices")
+        ->required()
+        ->type_name("");
+    command_
+        .add_option("-o,--output", options_.output,
+                    "Mesh to write, by suffix: .stl .ply (binary), .obj, .off, .vtp")
+        ->required()
+        ->type_name("FILE");
+    choice("--space", kSpaces, options_.space,
+           "Coordinates of the mesh: patient space in mm (lps: x to the left, y to the back, z to "
+           "the head; ras: x to the right, y to the front) or voxel indices");
+    command_.add_option("--report", options_.report, "JSON report to write")->type_name("FILE");
+    command_.add_flag("--quiet", options_.quiet, "No progress and no summary; errors only");
+  }
+
+  void object() {
+    number("--iso", p_.iso, "Value of the surface, in the image's units")->required();
+    choice("--inside", kInsides, p_.inside_below,
+           "The object is where the image is above (a bright object) or below iso");
+    text("--level-iso", "V,...", "derived",
+         "Value of the surface on each level from the coarsest to the full image, in the image's "
+         "units; by default those at which the level's object covers that of the full image",
+         [this](const std::string& s) { read_level_isos(s, p_); });
+    text("--window", "LO,HI", "derived",
+         "Values that are mapped to 0 and 1, in the image's units; iso lies between them",
+         [this](const std::string& s) {
+           const auto v = to_numbers("--window", s, 2);
+           if (!(v[0] < v[1])) refuse_value("--window", s, "a low value and a higher one");
+           p_.window_low = v[0];
+           p_.window_high = v[1];
+         });
+    number("--pad", p_.pad_value,
+           "Value that surrounds the image, so that objects cut by its border come out closed, in "
+           "the image's units; by default the outside end of the window");
+  }
+
+  void pyramid() {
+    text("--levels", "M", "3, fewer for small images",
+         "Levels of the pyramid above the full image; 0: direct, without a pyramid",
+         [this](const std::string& s) {
+           p_.levels = to_integer("--levels", s);
+           if (p_.levels < 0 || p_.levels >= PLC_MAX_LEVELS) {
+             refuse_value("--levels", s, "within 0 .. " + std::to_string(PLC_MAX_LEVELS - 1));
+           }
+         });
+    number("--reduction", p_.reduction, "Reduction from a level to the next, above 1, at most 2");
+    choice("--anisotropy", kAnisotropies, p_.anisotropy,
+           "The mesh is regular in mm (physical) or in voxels (voxel)");
+    text("--init", "bubble|bubbles=NX,NY,NZ", init_text(p_),
+         "Start from one bubble around the object, or from a grid of bubbles over the image, each "
+         "count 1 .. 256",
+         [this](const std::string& s) { read_init(s, p_); });
+  }
+
+  void model() {
+    number("--curvature", p_.curvature,
+           "alpha_c, smoothing by curvature, >= 0, relative to the attraction");
+    number("--spring", p_.spring, "alpha_e, elasticity of edges, >= 0, relative to the attraction");
+    text("--rest-length", "zero|mean|VALUE", rest_length_text(p_),
+         "Rest length of edges: zero (shrinks), their mean, or a value in units of delta, the "
+         "mesh's resolution",
+         [this](const std::string& s) { read_rest_length(s, p_); });
+    number("--attraction", p_.attraction, "|alpha_I|, attraction to the value of the surface, > 0");
+    number("--mass", p_.mass, "Mass of a vertex, > 0");
+    number("--damping", p_.damping, "Friction gamma, mass per time, >= 0");
+    number("--time-step", p_.time_step, "Time of an iteration, > 0; lowered where unstable");
+    number("--max-move", p_.max_move,
+           "Bound of a vertex's movement in an iteration, in units of delta, above 0, at most 1");
+    choice(
+        "--bound", kBounds, p_.bound,
+        "How movements are bounded: each vertex (clamp) or the time step by the fastest (scale)");
+    number("--epsilon", p_.epsilon,
+           "A level has converged when its mean kinetic energy along normals, in units of mass * "
+           "(delta / time step)^2, falls below this; above 0, at most 1");
+    text("--max-iterations", "N", std::to_string(p_.max_iterations),
+         "Iterations of a level at most, >= 1",
+         [this](const std::string& s) { p_.max_iterations = to_integer("--max-iterations", s); });
+  }
+
+  void machine() {
+    text("--threads", "N", "one per core", "Threads, 1 .. 1024; results do not depend on it",
+         [this](const std::string& s) {
+           options_.context.threads = to_integer("--threads", s);
+           if (options_.context.threads < 1) refuse_value("--threads", s, "at least 1");
+         });
+    choice("--simd", kSimds, options_.context.simd, "Instruction set; results do not depend on it");
+  }
+
+ private:
+  CLI::Option* text(const std::string& name, const std::string& type, const std::string& fallback,
+                    const std::string& meaning, std::function<void(const std::string&)> read) {
+    return command_.add_option_function<std::string>(name, std::move(read), meaning)
+        ->type_name(type)
+        ->default_str(fallback);
+  }
+
+  CLI::Option* number(const std::string& name, double& value, const std::string& meaning) {
+    return text(name, "VALUE", text_of(value), meaning,
+                [name, &value](const std::string& s) { value = to_number(name, s); });
+  }
+
+  template <typename T>
+  void choice(const std::string& name, const Choices<T>& choices, T& value,
+              const std::string& meaning) {
+    text(name, names_of(choices), name_of(value, choices), meaning,
+         [name, &choices, &value](const std::string& s) { value = to_choice(name, s, choices); });
+  }
+
+  CLI::App& command_;
+  ExtractOptions& options_;
+  plc_parameters& p_;
+};
+
+}  // namespace
+
+ExtractOptions::ExtractOptions() {
+  plc_parameters_defaults(&parameters);
+  plc_context_options_defaults(&context);
+}
+
+std::string rest_length_text(const plc_parameters& parameters) {
+  if (parameters.rest_length == PLC_REST_VALUE) return text_of(parameters.rest_length_value);
+  return name_of(parameters.rest_length, kRestLengths);
+}
+
+std::string init_text(const plc_parameters& parameters) {
+  if (parameters.init == PLC_INIT_BUBBLE) return "bubble";
+  return "bubbles=" + std::to_string(parameters.bubbles[0]) + "," +
+         std::to_string(parameters.bubbles[1]) + "," + std::to_string(parameters.bubbles[2]);
+}
+
+void add_extract_options(CLI::App& command, ExtractOptions& options) {
+  Declarations declare(command, options);
+  declare.files();
+  declare.object();
+  declare.pyramid();
+  declare.model();
+  declare.machine();
+}
+
+}  // namespace plc::tools

@@ -1,0 +1,36 @@
+// What `pellicle extract` is told on the command line.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "engine/pellicle.h"
+#include "tools/option_values.h"
+
+namespace plc::tools {
+
+struct ExtractOptions {
+  std::string input;
+  std::string output;
+  std::string report;  // "": none
+  plc_parameters parameters;
+  plc_context_options context;
+  plc_space space = PLC_SPACE_LPS;
+  bool quiet = false;
+
+  ExtractOptions();  // the engine's defaults
+};
+
+// Declares every option of `extract`, with its default as the engine gives it, on `command`;
+// parsing fills `options`, which must outlive it.
+void add_extract_options(CLI::App& command, ExtractOptions& options);
+
+extern const Choices<plc_space> kSpaces;
+extern const Choices<plc_bound> kBounds;
+extern const Choices<plc_anisotropy> kAnisotropies;
+extern const Choices<int> kInsides;  // plc_parameters::inside_below
+
+// As --rest-length and --init take them.
+std::string rest_length_text(const plc_parameters& parameters);
+std::string init_text(const plc_parameters& parameters);
+
+}  // namespace plc::tools

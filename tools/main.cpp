@@ -1,0 +1,92 @@
+// The `pellicle` command. Exit codes: 0 done, 1 a mesh or result is not valid, 2 bad usage or
+// input, 130 interrupted. Every error is one line on stderr.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+
+#include "engine/pellicle.h"
+#include "tools/command_check.h"
+#include "tools/command_extract.h"
+#include "tools/command_phantom.h"
+#include "tools/command_render.h"
+#include "tools/volume_io.h"
+
+namespace {
+
+using namespace plc::tools;
+
+constexpr int kExitBad = 2;
+constexpr size_t kHelpColumn = 34;
+
+int fail(std::string message) {
+  while (!message.empty() && message.back() == '\n') message.pop_back();
+  for (char& c : message) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  std::fprintf(stderr, "pellicle: %s\n", message.c_str());
+  return kExitBad;
+}
+
+class Command {
+ public:
+  Command() {
+    app_.set_version_flag("--version", plc_version_string());
+    app_.require_subcommand(1);
+    app_.get_formatter()->column_width(kHelpColumn);
+    extract_ = add("extract", "Extract a closed surface from a volume");
+    check_ = add("check", "Tell what a mesh is and whether it is a valid closed surface");
+    phantom_ = add("phantom", "Write a synthetic test volume");
+    render_ = add("render", "Draw a shaded picture of a mesh");
+    add_extract_options(*extract_, extract_options_);
+    add_check_options(*check_, check_options_);
+    add_phantom_options(*phantom_, phantom_arguments_);
+    add_render_options(*render_, render_options_);
+  }
+
+  int run(int argc, char** argv) {
+    try {
+      app_.parse(argc, argv);
+    } catch (const CLI::Success& e) {
+      return app_.exit(e);  // --help, --version
+    } catch (const CLI::ParseError& e) {
+      return fail(e.what());
+    }
+    if (extract_->parsed()) return run_extract(extract_options_);
+    if (check_->parsed()) return run_check(check_options_);
+    if (phantom_->parsed()) return run_phantom(phantom_arguments_);
+    return run_render(render_options_);
+  }
+
+ private:
+  CLI::App* add(const std::string& name, const std::string& meaning) {
+    return app_.add_subcommand(name, meaning);
+  }
+
+  CLI::App app_{"Closed, oriented, intersection-free triangulated surfaces from 3D images",
+                "pellicle"};
+  CLI::App* extract_ = nullptr;
+  CLI::App* check_ = nullptr;
+  CLI::App* phantom_ = nullptr;
+  CLI::App* render_ = nullptr;
+  ExtractOptions extract_options_;
+  CheckOptions check_options_;
+  PhantomArguments phantom_arguments_;
+  RenderOptions render_options_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return Command().run(argc, argv);
+  } catch (const Failure& failure) {
+    return fail(failure.message);
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory");
+  } catch (const std::exception& e) {
+    return fail(e.what());
+  }
+}

@@ -1,0 +1,173 @@
+#include "tools/report.h"
+
+#include <sys/resource.h>
+#include <array>
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+
+#include "tools/atomic_file.h"
+#include "tools/extract_options.h"
+#include "tools/volume_io.h"
+
+namespace plc::tools {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json parameters_json(const plc_parameters& p, plc_space space) {
+  Json isos = Json::array();  // coarse to fine, as --level-iso takes them
+  for (int h = p.level_iso_count; h-- > 0;) isos.push_back(p.level_iso[h]);
+  return {{"iso", p.iso},
+          {"inside", name_of(p.inside_below, kInsides)},
+          {"level_iso", isos},
+          {"window", {p.window_low, p.window_high}},
+          {"pad", p.pad_value},
+          {"levels", p.levels},
+          {"reduction", p.reduction},
+          {"anisotropy", name_of(p.anisotropy, kAnisotropies)},
+          {"init", init_text(p)},
+          {"curvature", p.curvature},
+          {"spring", p.spring},
+          {"rest_length", rest_length_text(p)},
+          {"attraction", p.attraction},
+          {"mass", p.mass},
+          {"damping", p.damping},
+          {"time_step", p.time_step},
+          {"max_move", p.max_move},
+          {"bound", name_of(p.bound, kBounds)},
+          {"epsilon", p.epsilon},
+          {"max_iterations", p.max_iterations},
+          {"space", name_of(space, kSpaces)}};
+}
+
+plc_level_report level_of(const plc_surface* surface, int index) {
+  plc_level_report level{};
+  level.struct_size = sizeof level;
+  if (plc_surface_level(surface, index, &level) != PLC_OK) {
+    throw Failure{"level " + std::to_string(index) + ": no report"};
+  }
+  return level;
+}
+
+Json level_json(const plc_level_report& level) {
+  return {{"level", level.level},
+          {"dims", level.dims},
+          {"unit", level.unit},
+          {"delta", level.delta},
+          {"iso", level.iso},
+          {"iterations", level.iterations},
+          {"vertices", level.vertices},
+          {"converged", level.converged != 0},
+          {"energy", level.energy},
+          {"seconds",
+           {{"topology", level.seconds_topology},
+            {"normals", level.seconds_normals},
+            {"dynamics", level.seconds_dynamics},
+            {"total", level.seconds_total}}},
+          {"operations",
+           {{"creation", level.creations},
+            {"inversion", level.inversions},
+            {"deletion", level.deletions},
+            {"annular", level.annular},
+            {"axial", level.axial},
+            {"tetrahedron", level.tetrahedra},
+            {"refinement", level.refinements}}},
+          {"deferred", level.deferred}};
+}
+
+Json input_json(const plc_image& image, const plc_surface* surface) {
+  double low = 0;
+  double high = 0;
+  plc_surface_input_range(surface, &low, &high);
+  return {{"dims", image.dims}, {"spacing", image.spacing}, {"range", {low, high}}};
+}
+
+Json surface_json(const plc_measures& m) {
+  return {{"vertices", m.vertices}, {"faces", m.faces}, {"components", m.components},
+          {"euler", m.euler},       {"genus", m.genus}, {"area", m.area},
+          {"volume", m.volume}};
+}
+
+template <typename... Values>
+std::string format(const char* pattern, Values... values) {
+  std::array<char, 512> line{};
+  std::snprintf(line.data(), line.size(), pattern, values...);
+  return line.data();
+}
+
+}  // namespace
+
+int64_t peak_rss_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return int64_t{1024} * usage.ru_maxrss;  // Linux counts in KiB
+}
+
+std::string hash_text(uint64_t hash) {
+  return format("%016" PRIx64, hash);
+}
+
+Json make_report(const plc_context* context, const plc_image& image, const plc_surface* surface,
+                 const plc_measures& measures, const Timings& timings, plc_space space) {
+  plc_parameters parameters{};
+  parameters.struct_size = sizeof parameters;
+  plc_surface_parameters(surface, &parameters);
+  double pyramid = 0;
+  double evolution = 0;
+  plc_surface_seconds(surface, &pyramid, &evolution);
+  Json levels = Json::array();
+  for (int i = 0; i < plc_surface_level_count(surface); ++i) {
+    levels.push_back(level_json(level_of(surface, i)));
+  }
+  return {{"pellicle", plc_version_string()},
+          {"input", input_json(image, surface)},
+          {"parameters", parameters_json(parameters, space)},
+          {"levels", levels},
+          {"surface", surface_json(measures)},
+          {"seconds",
+           {{"read", timings.read},
+            {"pyramid", pyramid},
+            {"evolution", evolution},
+            {"write", timings.write},
+            {"total", timings.total}}},
+          {"peak_rss_bytes", peak_rss_bytes()},
+          {"hash", hash_text(plc_surface_hash(surface))},
+          {"threads", plc_context_threads(context)},
+          {"simd", plc_context_simd(context)}};
+}
+
+void check_report_path(const std::string& path) {
+  const AtomicFile probe(path);
+}
+
+void write_report(const std::string& path, const Json& report) {
+  AtomicFile file(path);
+  file.write(report.dump(2) + "\n");
+  file.commit();
+}
+
+std::string summary(const plc_image& image, const plc_surface* surface, const plc_measures& m,
+                    const Timings& timings, const std::string& output) {
+  std::string text =
+      format("image    %" PRId64 " x %" PRId64 " x %" PRId64 " voxels of %.4g x %.4g x %.4g mm\n",
+             image.dims[0], image.dims[1], image.dims[2], image.spacing[0], image.spacing[1],
+             image.spacing[2]);
+  for (int i = 0; i < plc_surface_level_count(surface); ++i) {
+    const plc_level_report level = level_of(surface, i);
+    text += format("level %d  %" PRId64 " x %" PRId64 " x %" PRId64 ", iso %.5g: %" PRId64
+                   " iterations, %" PRId64 " vertices, %.2f s%s\n",
+                   level.level, level.dims[0], level.dims[1], level.dims[2], level.iso,
+                   level.iterations, level.vertices, level.seconds_total,
+                   level.converged != 0 ? "" : ", stopped at the most iterations");
+  }
+  text += format("surface  %" PRId64 " vertices, %" PRId64 " faces, components %" PRId64
+                 ", genus %" PRId64 ", area %.1f mm2, volume %.1f mm3\n",
+                 m.vertices, m.faces, m.components, m.genus, m.area, m.volume);
+  text += format("time     %.2f s, peak memory %.0f MiB\n", timings.total,
+                 std::ceil(static_cast<double>(peak_rss_bytes()) / (1024.0 * 1024.0)));
+  return text + "written  " + output + "\n";
+}
+
+}  // namespace plc::tools
