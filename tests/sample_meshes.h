@@ -17,10 +17,12 @@ struct Soup {
   size_t vertex_count() const { return xyz.size() / 3; }
   size_t face_count() const { return abc.size() / 3; }
   uint32_t vertex(double x, double y, double z) {
-    xyz.insert(xyz.end(), {x, y, z});
+    for (const double value : {x, y, z}) xyz.push_back(value);
     return static_cast<uint32_t>(vertex_count() - 1);
   }
-  void face(uint32_t a, uint32_t b, uint32_t c) { abc.insert(abc.end(), {a, b, c}); }
+  void face(uint32_t a, uint32_t b, uint32_t c) {
+    for (const uint32_t v : {a, b, c}) abc.push_back(v);
+  }
   // The other mesh beside this one.
   void append(const Soup& other) {
     const auto base = static_cast<uint32_t>(vertex_count());
