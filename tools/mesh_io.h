@@ -9,9 +9,9 @@
 namespace plc::tools {
 
 struct TriangleMesh {
-  std::vector<double> xyz;      // three per vertex
-  std::vector<uint32_t> abc;    // three per face
-  std::vector<float> normals;   // three per vertex, or none
+  std::vector<double> xyz;     // three per vertex
+  std::vector<uint32_t> abc;   // three per face
+  std::vector<float> normals;  // three per vertex, or none
 };
 
 // By suffix. Polygons are fan-triangulated; the corners of an STL are welded where they coincide

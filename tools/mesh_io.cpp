@@ -1,0 +1,115 @@
+#include "tools/mesh_io.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <system_error>
+#include <utility>
+
+#include "tools/mesh_io_formats.h"
+#include "tools/volume_io_memory.h"
+
+namespace plc::tools {
+namespace {
+
+struct Format {
+  const char* suffix;
+  TriangleMesh (*read)(const std::string& path, std::string_view data);
+  void (*write)(AtomicFile& file, const TriangleMesh& mesh);
+};
+
+const Format& format_of(const std::string& path) {
+  static constexpr Format kFormats[] = {{".stl", read_stl, write_stl},
+                                        {".ply", read_ply, write_ply},
+                                        {".obj", read_obj, write_obj},
+                                        {".off", read_off, write_off},
+                                        {".vtp", read_vtp, write_vtp}};
+  const std::string suffix = path_suffix(path);
+  for (const Format& format : kFormats) {
+    if (suffix == format.suffix) return format;
+  }
+  throw Failure{path + ": unknown format of meshes (known are .stl, .ply, .obj, .off and .vtp)"};
+}
+
+std::string contents(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw Failure{path + ": there is no such file"};
+  if (!std::filesystem::is_regular_file(status)) throw Failure{path + ": is not a file"};
+  const uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) throw Failure{path + ": cannot be read: " + error.message()};
+  // The text and the mesh made of it, which no format stores in less than half its size.
+  require_memory(path, size * 3);
+  std::ifstream file(path, std::ios::binary);
+  std::string data(size, '\0');
+  if (!file.read(data.data(), static_cast<std::streamsize>(size))) {
+    throw Failure{path + ": cannot be read"};
+  }
+  return data;
+}
+
+}  // namespace
+
+void MeshBuilder::normal(double x, double y, double z) {
+  mesh_.normals.insert(mesh_.normals.end(),
+                       {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
+}
+
+uint32_t MeshBuilder::index(int64_t corner) const {
+  if (!std::in_range<uint32_t>(corner)) {
+    throw Failure{path_ + ": face " + std::to_string(mesh_.abc.size() / 3) + " refers to vertex " +
+                  std::to_string(corner)};
+  }
+  return static_cast<uint32_t>(corner);
+}
+
+void MeshBuilder::triangle(int64_t a, int64_t b, int64_t c) {
+  mesh_.abc.insert(mesh_.abc.end(), {index(a), index(b), index(c)});
+}
+
+void MeshBuilder::polygon(std::span<const int64_t> corners) {
+  if (corners.size() < 3) {
+    throw Failure{path_ + ": has a face of " + std::to_string(corners.size()) + " corners"};
+  }
+  for (size_t i = 2; i < corners.size(); ++i) triangle(corners[0], corners[i - 1], corners[i]);
+}
+
+TriangleMesh MeshBuilder::finish() {
+  const size_t count = vertex_count();
+  if (count > std::numeric_limits<uint32_t>::max()) {
+    throw Failure{path_ + ": has too many vertices (" + std::to_string(count) + ")"};
+  }
+  for (size_t i = 0; i < mesh_.abc.size(); ++i) {
+    if (mesh_.abc[i] < count) continue;
+    throw Failure{path_ + ": face " + std::to_string(i / 3) + " refers to vertex " +
+                  std::to_string(mesh_.abc[i]) + " of " + std::to_string(count)};
+  }
+  if (mesh_.normals.size() != mesh_.xyz.size()) mesh_.normals.clear();
+  return std::move(mesh_);
+}
+
+TriangleMesh read_mesh(const std::string& path) {
+  const Format& format = format_of(path);
+  const std::string data = contents(path);
+  if (data.empty()) throw Failure{path + ": is empty"};
+  try {
+    return format.read(path, data);
+  } catch (const std::bad_alloc&) {
+    throw Failure{path + ": not enough memory to read it"};
+  }
+}
+
+void check_mesh_path(const std::string& path) {
+  format_of(path);
+  const AtomicFile file(path);
+}
+
+void write_mesh(const std::string& path, const TriangleMesh& mesh) {
+  const Format& format = format_of(path);
+  AtomicFile file(path);
+  format.write(file, mesh);
+  file.commit();
+}
+
+}  // namespace plc::tools

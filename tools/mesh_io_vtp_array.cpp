@@ -1,0 +1,181 @@
+#include "tools/mesh_io_vtp_array.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "tools/mesh_io_text.h"
+#include "tools/volume_io.h"
+
+namespace plc::tools {
+namespace {
+
+int base64_digit(char c) {
+  if (c >= 'A' && c <= 'Z') return c - 'A';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+  if (c >= '0' && c <= '9') return c - '0' + 52;
+  if (c == '+') return 62;
+  if (c == '/') return 63;
+  return -1;
+}
+
+// The first `wanted` bytes, or fewer where the text ends. VTK encodes lengths and data apart, so
+// padding ends a group of four digits but not the text.
+std::string decode_base64(std::string_view text, size_t wanted) {
+  std::string out;
+  out.reserve(std::min(wanted, text.size() / 4 * 3) + 3);
+  uint32_t group = 0;
+  int digits = 0;
+  int padding = 0;
+  for (const char c : text) {
+    if (out.size() >= wanted) break;
+    if (c == '=') {
+      ++padding;
+    } else {
+      const int digit = base64_digit(c);
+      if (digit < 0) continue;  // white space
+      group |= static_cast<uint32_t>(digit) << (18 - 6 * digits);
+    }
+    if (++digits < 4) continue;
+    for (int k = 0; k < 3 - std::min(padding, 2); ++k) {
+      out += static_cast<char>((group >> (16 - 8 * k)) & 0xffU);
+    }
+    group = 0;
+    digits = padding = 0;
+  }
+  if (out.size() > wanted) out.resize(wanted);
+  return out;
+}
+
+class ArrayReader {
+ public:
+  ArrayReader(const std::string& path, const VtpEncoding& encoding, const VtpAppended& appended,
+              const VtpArray& array)
+      : path_(path), encoding_(encoding), array_(array) {
+    if (array.format != "appended") {
+      source_ = array.text;
+      base64_ = true;
+      return;
+    }
+    if (array.offset > appended.data.size()) fail("begins beyond the end of the file");
+    source_ = appended.data.substr(array.offset);
+    base64_ = appended.base64;
+  }
+
+  std::string bytes() { return encoding_.compressed ? decompressed() : plain(); }
+  [[noreturn]] void fail(const std::string& message) const {
+    throw Failure{path_ + ": its array " + array_.name.substr(0, 40) + " " + message};
+  }
+
+ private:
+  size_t word_size() const { return encoding_.wide_header ? 8 : 4; }
+
+  // The first `size` bytes, decoded.
+  std::string first(uint64_t size) const {
+    std::string data =
+        base64_ ? decode_base64(source_, size)
+                : std::string(source_.substr(0, std::min<uint64_t>(size, source_.size())));
+    if (data.size() < size) fail("is truncated");
+    return data;
+  }
+  uint64_t word(const std::string& data, size_t index) const {
+    const char* at = data.data() + index * word_size();
+    return encoding_.wide_header ? load_value<uint64_t>(at, encoding_.big_endian)
+                                 : load_value<uint32_t>(at, encoding_.big_endian);
+  }
+  // Nothing is longer than what it is read from.
+  void check_length(uint64_t length) const {
+    if (length > source_.size()) fail("is truncated");
+  }
+
+  std::string plain() const {
+    const uint64_t length = word(first(word_size()), 0);
+    check_length(length);
+    return first(word_size() + length).substr(word_size());
+  }
+
+  // Header: blocks, bytes of a block, bytes of the last one (0: a whole one), then the compressed
+  // bytes of each block; then the blocks.
+  std::string decompressed() const {
+    const uint64_t blocks = word(first(word_size()), 0);
+    if (blocks == 0) return {};
+    check_length(blocks);
+    const size_t header_size = (3 + blocks) * word_size();
+    const std::string header = first(header_size);
+    const uint64_t block_size = word(header, 1);
+    const uint64_t last_size = word(header, 2) != 0 ? word(header, 2) : block_size;
+    uint64_t packed = 0;
+    for (uint64_t i = 0; i < blocks; ++i) {
+      check_length(word(header, 3 + i));
+      packed += word(header, 3 + i);
+      check_length(packed);
+    }
+    constexpr uint64_t kMaxRatio = 1100;  // zlib's is 1032
+    if (block_size > kMaxRatio * packed || last_size > block_size ||
+        block_size * blocks > kMaxRatio * packed) {
+      fail("has lengths that contradict each other");
+    }
+    const std::string data = first(header_size + packed);
+    std::string out((blocks - 1) * block_size + last_size, '\0');
+    const char* in = data.data() + header_size;
+    for (uint64_t i = 0; i < blocks; ++i) {
+      const uint64_t wanted = i + 1 < blocks ? block_size : last_size;
+      uLongf size = wanted;
+      const uint64_t length = word(header, 3 + i);
+      if (uncompress(reinterpret_cast<Bytef*>(out.data() + i * block_size), &size,
+                     reinterpret_cast<const Bytef*>(in), length) != Z_OK ||
+          size != wanted) {
+        fail("cannot be decompressed");
+      }
+      in += length;
+    }
+    return out;
+  }
+
+  const std::string& path_;
+  const VtpEncoding& encoding_;
+  const VtpArray& array_;
+  std::string_view source_;
+  bool base64_ = false;
+};
+
+template <typename T>
+std::vector<double> unpack(const std::string& bytes, bool big) {
+  std::vector<double> values(bytes.size() / sizeof(T));
+  for (size_t i = 0; i < values.size(); ++i) {
+    values[i] = static_cast<double>(load_value<T>(bytes.data() + i * sizeof(T), big));
+  }
+  return values;
+}
+
+}  // namespace
+
+std::vector<double> vtp_values(const std::string& path, const VtpEncoding& encoding,
+                               const VtpAppended& appended, const VtpArray& array) {
+  if (array.format == "ascii") {
+    std::vector<double> values;
+    TextReader text(path, array.text);
+    while (!text.at_end()) values.push_back(text.real());
+    return values;
+  }
+  ArrayReader reader(path, encoding, appended, array);
+  if (array.format != "binary" && array.format != "appended") reader.fail("has an unknown format");
+  using Unpack = std::vector<double> (*)(const std::string&, bool);
+  struct Type {
+    std::string_view name;
+    Unpack unpack;
+  };
+  static constexpr Type kTypes[] = {{"Float32", unpack<float>},   {"Float64", unpack<double>},
+                                    {"Int64", unpack<int64_t>},   {"Int32", unpack<int32_t>},
+                                    {"UInt64", unpack<uint64_t>}, {"UInt32", unpack<uint32_t>},
+                                    {"Int16", unpack<int16_t>},   {"UInt16", unpack<uint16_t>},
+                                    {"Int8", unpack<int8_t>},     {"UInt8", unpack<uint8_t>}};
+  for (const Type& type : kTypes) {
+    if (type.name == array.type) return type.unpack(reader.bytes(), encoding.big_endian);
+  }
+  reader.fail("has an unknown type");
+}
+
+}  // namespace plc::tools

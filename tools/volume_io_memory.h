@@ -1,0 +1,28 @@
+// Checks and allocation shared by everything that makes a volume.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "tools/volume_io.h"
+
+namespace plc::tools {
+
+size_t voxel_size(plc_voxel_type type);
+
+// "256 x 256 x 108"
+std::string dims_text(const int64_t dims[3]);
+
+// The number of voxels. Throws Failure unless every dimension is >= 2 and dims * 8 bytes fit 63
+// bit.
+int64_t checked_voxel_count(const std::string& path, const int64_t dims[3]);
+
+// Throws Failure where the machine has not `bytes` left.
+void require_memory(const std::string& path, uint64_t bytes);
+
+// Defaults of plc_image_defaults, the given type and dims, and room for the voxels.
+LoadedVolume make_volume(const std::string& path, plc_voxel_type type, const int64_t dims[3]);
+
+// In lower case: ".nii.gz" is one; "" where there is none.
+std::string path_suffix(const std::string& path);
+
+}  // namespace plc::tools
