@@ -84,7 +84,10 @@ class Extraction {
                                            " voxels are NaN or infinite"};
     }
     const bool above = p.inside_below == 0;
-    if (Status s = derive_parameters(volume_, surface_->range, context_.schedule, p); !s.ok()) {
+    double background = 0;
+    if (Status s =
+            derive_parameters(volume_, surface_->range, context_.schedule, p, background);
+        !s.ok()) {
       return s;
     }
     if (Status s = build_pyramid(volume_, pyramid_spec(p), context_.schedule, context_.simd,
@@ -93,16 +96,16 @@ class Extraction {
       return s;
     }
     spec_ = recovery_spec(p, volume_.spacing);
-    choose_isos(above);
+    choose_isos(above, background);
     surface_->seconds_pyramid = now() - start;
     return {};
   }
 
-  void choose_isos(bool above) {
+  void choose_isos(bool above, double background) {
     plc_parameters& p = surface_->parameters;
     if (p.level_iso_count == 0) {
-      spec_.isos = covering_isos(pyramid_, normalised(p, p.iso), above, context_.schedule,
-                                 context_.simd);
+      spec_.isos = covering_isos(pyramid_, normalised(p, p.iso), above,
+                                 level_iso_bound(p, background), context_.schedule, context_.simd);
     } else {
       for (int h = 0; h <= p.levels; ++h) spec_.isos.push_back(normalised(p, p.level_iso[h]));
     }

@@ -49,6 +49,16 @@ bool meet(const Proposal::Face& f, const Proposal::Face& g) {
   return triangles_intersect(triangle(f), triangle(g));
 }
 
+// Faces of zero area meet nothing by the definition of triangle_intersection.h; they may not be made.
+bool any_degenerate(const Proposal& proposal) {
+  return std::any_of(proposal.faces.begin(), proposal.faces.end(), [](const Proposal::Face& face) {
+    const auto point = [&](size_t i) {
+      return Point3{face.place[i].x, face.place[i].y, face.place[i].z};
+    };
+    return collinear(point(0), point(1), point(2));
+  });
+}
+
 // New faces against one another.
 bool new_faces_meet(const Proposal& proposal, const std::vector<Box>& boxes) {
   for (size_t i = 0; i < boxes.size(); ++i) {
@@ -146,7 +156,7 @@ Proposal propose_axial(const Mesh& mesh, const AxialPlan& plan) {
 bool embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal) {
   std::vector<Box> boxes;
   for (const auto& face : proposal.faces) boxes.push_back(Box::around(face.place));
-  if (new_faces_meet(proposal, boxes)) return false;
+  if (any_degenerate(proposal) || new_faces_meet(proposal, boxes)) return false;
   Box all = boxes[0];
   for (const Box& box : boxes) {
     all.add(box.low);

@@ -58,6 +58,7 @@ void Mesh::place(uint32_t v, Vec3 p) {
 }
 
 uint32_t Mesh::create(Vec3 p, Vec3 speed) {
+  ++created_;
   uint32_t v = slots_;
   if (!free_.empty()) {
     v = free_.back();
@@ -144,7 +145,7 @@ void Mesh::remove(uint32_t v, uint32_t neighbor) {
 }
 
 void Mesh::clear() {
-  slots_ = alive_ = 0;
+  slots_ = alive_ = created_ = 0;
   free_.clear();
   tail_.clear();
   for (auto& list : free_tails_) list.clear();

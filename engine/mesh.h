@@ -79,6 +79,8 @@ class Mesh {
 
   void clear();
   void reserve(uint32_t vertices);
+  // Vertices created since the ids were last renumbered: how far ids have strayed from space order.
+  uint32_t created() const { return created_; }
   // New ids: new id = rank of v in `order`, which lists every living vertex once. Nothing but the
   // ids changes.
   void renumber(const std::vector<uint32_t>& order);
@@ -98,6 +100,7 @@ class Mesh {
 
   uint32_t slots_ = 0;
   uint32_t alive_ = 0;
+  uint32_t created_ = 0;
   Buffer<uint32_t> columns_;
   Buffer<uint16_t> valence_;
   Buffer<uint32_t> tail_;

@@ -35,6 +35,9 @@ Status check_ranges(std::initializer_list<Range> ranges) {
   return {};
 }
 
+// On a head CT the soft tissue around the bone fills the coarse levels below 1/8.
+constexpr double kLevelIsoMargin = 0.25;
+
 // Far beyond any use; keeps every product of coefficients within floats.
 constexpr double kMaxCoefficient = 1e6;
 
@@ -102,7 +105,7 @@ Status check_parameters(const plc_parameters& p) {
 }
 
 Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
-                         const Executor& executor, plc_parameters& p) {
+                         const Executor& executor, plc_parameters& p, double& background) {
   const bool above = p.inside_below == 0;
   if (range.low == range.high) {
     return {ErrorCode::kInvalidData,
@@ -114,11 +117,10 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
     return {ErrorCode::kInvalidArgument, "iso " + text(p.iso) + ": outside the image's range " +
                                              text(range.low) + " .. " + text(range.high)};
   }
-  if (std::isnan(p.window_low) || std::isnan(p.window_high)) {
-    const Window window = derive_window(volume, range, p.iso, above, executor);
-    if (std::isnan(p.window_low)) p.window_low = window.low;
-    if (std::isnan(p.window_high)) p.window_high = window.high;
-  }
+  const Window window = derive_window(volume, range, p.iso, above, executor);
+  background = window.background;
+  if (std::isnan(p.window_low)) p.window_low = window.low;
+  if (std::isnan(p.window_high)) p.window_high = window.high;
   if (!(p.window_low < p.iso && p.iso < p.window_high)) {
     return {ErrorCode::kInvalidArgument, "window " + text(p.window_low) + ", " +
                                              text(p.window_high) + ": iso " + text(p.iso) +
@@ -138,6 +140,10 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
   if (p.levels < 0 && p.level_iso_count > 0) p.levels = p.level_iso_count - 1;
   if (p.levels < 0) p.levels = std::min(3, deepest);
   return {};
+}
+
+double level_iso_bound(const plc_parameters& p, double background) {
+  return normalised(p, background + kLevelIsoMargin * (p.iso - background));
 }
 
 PyramidSpec pyramid_spec(const plc_parameters& p) {

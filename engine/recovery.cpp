@@ -51,10 +51,10 @@ class Recovery {
         levels_(static_cast<int>(pyramid.levels.size()) - 1) {}
 
   Status run(std::vector<LevelRecord>& records) {
-    if (Status s = start(); !s.ok()) return s;
     for (int h = levels_; h >= 0; --h) {
       records.emplace_back();
-      if (Status s = recover_shape(h, records.back()); !s.ok()) return s;
+      records.back().level = h;
+      if (Status s = recover_level(h, records.back()); !s.ok()) return s;
     }
     mesh_.renumber(morton_order(mesh_));
     return {};
@@ -69,17 +69,31 @@ class Recovery {
   }
   float iso_of(int h) const { return static_cast<float>(spec_.isos[static_cast<size_t>(h)]); }
 
-  Status start() {
-    const PyramidLevel& coarsest = pyramid_.levels.back();
-    const ImageView view = image_view(pyramid_, levels_, spec_);
+  // A level on which the object does not show, or cannot hold the surface, is passed over: the
+  // surface then starts on the next finer one.
+  Status recover_level(int h, LevelRecord& record) {
+    if (mesh_.vertex_count() == 0) {
+      if (Status s = start(h); !s.ok()) return s;
+    }
+    if (mesh_.vertex_count() != 0) {
+      if (Status s = recover_shape(h, record); !s.ok()) return s;
+    }
+    if (h > 0 || mesh_.vertex_count() != 0) return {};
+    return {ErrorCode::kInvalidData,
+            "no surface: nothing in the image holds one at this iso-value; check the iso-value, or "
+            "use weaker internal forces"};
+  }
+
+  // The initial surface, on the image of level h; none where no voxel is on the object's side.
+  Status start(int h) {
+    mesh_.clear();
     Extent box;
-    if (!object_extent(coarsest, view, iso_of(levels_), spec_.inside_above, box)) {
-      return {ErrorCode::kInvalidData,
-              "level " + std::to_string(levels_) + ": no voxel of the image lies on the object's "
-              "side of the iso-value there; use fewer levels or set the iso-values of the levels"};
+    if (!object_extent(pyramid_.levels[static_cast<size_t>(h)], image_view(pyramid_, h, spec_),
+                       iso_of(h), spec_.inside_above, box)) {
+      return {};
     }
     if (spec_.init == Init::kBubble) {
-      make_bubble(mesh_, box, delta_of(levels_), schedule_);
+      make_bubble(mesh_, box, delta_of(h), schedule_);
       return {};
     }
     // The grid of bubbles spans the unpadded image.
@@ -89,7 +103,7 @@ class Recovery {
       box.low[a] = -0.5 * spec_.space.step[a];
       box.high[a] = (voxels - 0.5) * spec_.space.step[a];
     }
-    return make_bubbles(mesh_, box, spec_.bubbles, delta_of(levels_), schedule_);
+    return make_bubbles(mesh_, box, spec_.bubbles, delta_of(h), schedule_);
   }
 
   // Figure 12, first loop: refine until the density fits the image. With rho = sqrt 3 that is one
@@ -108,7 +122,6 @@ class Recovery {
   }
 
   Status recover_shape(int h, LevelRecord& record) {
-    record.level = h;
     const double start = now();
     adapt(h, record);
     record.delta = mesh_.delta;
@@ -119,8 +132,8 @@ class Recovery {
     double first_energy = 0;
     for (int i = 1; i <= spec_.max_iterations && !record.converged; ++i) {
       evolution_.iterate(view, iso_of(h), record.seconds, record.operations);
-      if (mesh_.vertex_count() == 0) return vanished(h);
       record.iterations = i;
+      if (mesh_.vertex_count() == 0) return {};
       record.energy = evolution_.energy();
       first_energy = std::max(first_energy, record.energy);
       calm = record.energy < spec_.epsilon ? calm + 1 : 0;
@@ -131,21 +144,14 @@ class Recovery {
       renumber_if_scattered();
     }
     evolution_.check_all(record.seconds, record.operations);
-    if (mesh_.vertex_count() == 0) return vanished(h);
     record.vertices = mesh_.vertex_count();
     return {};
   }
 
-  static Status vanished(int h) {
-    return {ErrorCode::kInvalidData,
-            "the surface vanished on level " + std::to_string(h) +
-                ": nothing there holds it at this iso-value; use fewer levels, or weaker internal "
-                "forces"};
-  }
-
-  // Neighbours far apart in memory cost three times as much: when a quarter of the ids is unused.
+  // Neighbours that are far apart in memory cost three times as much, and boxes over runs of ids
+  // grow: when the new vertices are a sixteenth of all.
   void renumber_if_scattered() {
-    if (mesh_.slots() - mesh_.vertex_count() <= mesh_.slots() / 4) return;
+    if (mesh_.created() <= mesh_.vertex_count() / 16) return;
     mesh_.renumber(morton_order(mesh_));
     evolution_.restart();
   }

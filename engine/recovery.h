@@ -57,9 +57,9 @@ using RecoveryProgressFn = std::function<bool(const RecoveryProgress&)>;
 ImageView image_view(const Pyramid& pyramid, int level, const RecoverySpec& spec);
 
 // Evolves `mesh` from the coarsest level of the pyramid to I_0; records gets one entry per level,
-// coarse to fine. The result is closed, oriented and free of self-intersections. Errors:
-// kInvalidArgument (bubbles), kInvalidData (nothing of the object on the coarsest level, or the
-// surface vanished), kCancelled.
+// coarse to fine. A level that holds no surface has 0 vertices in its record; the next finer one then
+// starts anew. The result is closed, oriented and free of self-intersections. Errors:
+// kInvalidArgument (bubbles), kInvalidData (no level holds a surface), kCancelled.
 Status pyramidal_recover_shape(const Pyramid& pyramid, const RecoverySpec& spec,
                                const Schedule& schedule, SimdTarget simd,
                                const RecoveryProgressFn& progress, Mesh& mesh,

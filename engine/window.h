@@ -9,14 +9,14 @@ namespace plc {
 
 struct Window {
   double low, high;
+  double background;  // typical value across the surface from the object
 };
 
 // Typical values on either side of the iso-surface are the medians of the voxels of the object that
 // have a voxel outside it for a face neighbour, and of the latter. The window reaches beyond the
-// iso-value by kWindowReach times as much as they do, and not beyond the image's range: (7) then
-// attracts about as strongly from outside as from inside, whatever else is in the image, and nothing
-// that decides where the surface lies is clipped. `range` is that of the image. The same for any
-// executor.
+// iso-value by several times as much as they do, and not beyond the image's range, so that what is
+// far from the surface neither weakens (7) there nor hides thin parts of the object in the coarse
+// images. `range` is that of the image. The same for any executor.
 Window derive_window(const VolumeView& volume, const VoxelRange& range, double iso,
                      bool inside_above, const Executor& executor);
 

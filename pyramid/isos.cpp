@@ -97,7 +97,7 @@ class ObjectHistogram {
 }  // namespace
 
 std::vector<double> covering_isos(const Pyramid& pyramid, double iso_0, bool inside_above,
-                                  const Executor& executor, SimdTarget simd) {
+                                  double bound, const Executor& executor, SimdTarget simd) {
   std::vector<double> isos(pyramid.levels.size(), within(iso_0));
   for (size_t h = 1; h < isos.size(); ++h) {
     const ObjectHistogram histogram(pyramid.levels[0], pyramid.levels[h], static_cast<float>(iso_0),
@@ -105,7 +105,8 @@ std::vector<double> covering_isos(const Pyramid& pyramid, double iso_0, bool ins
     const double least = histogram.quantile(inside_above ? kUncoveredPart : 1.0 - kUncoveredPart);
     if (std::isnan(least)) continue;  // no object on I_0
     // Never on the far side of iso_0: there the coarse object would lose what shows anyway.
-    isos[h] = within(inside_above ? std::min(least, iso_0) : std::max(least, iso_0));
+    isos[h] = within(inside_above ? std::min(std::max(least, bound), iso_0)
+                                  : std::max(std::min(least, bound), iso_0));
   }
   return isos;
 }

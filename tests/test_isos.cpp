@@ -39,7 +39,7 @@ Pyramid build(int64_t size, int levels, const Value& value) {
 }
 
 std::vector<double> isos_of(const Pyramid& pyramid, double iso_0, bool above) {
-  return plc::covering_isos(pyramid, iso_0, above, kSerial, plc::best_simd_target());
+  return plc::covering_isos(pyramid, iso_0, above, above ? 0.0 : 1.0, kSerial, plc::best_simd_target());
 }
 
 // 1 inside the radius, 0 outside, linear over one voxel between; off the symmetries of the grid.
@@ -172,10 +172,22 @@ TEST_CASE("iso values do not depend on the target or the threads", "[pyramid]") 
     return ball(x, y, z, 20, 9) * (0.6 + 0.4 * std::sin(x * y + z));
   });
   const std::vector<double> expected =
-      plc::covering_isos(pyramid, 0.5, true, kSerial, plc::SimdTarget::kScalar);
+      plc::covering_isos(pyramid, 0.5, true, 0.0, kSerial, plc::SimdTarget::kScalar);
   for (const plc::SimdTarget simd : plc::available_simd_targets()) {
     for (const unsigned threads : {1U, 4U}) {
-      REQUIRE(plc::covering_isos(pyramid, 0.5, true, ThreadExecutor(threads), simd) == expected);
+      REQUIRE(plc::covering_isos(pyramid, 0.5, true, 0.0, ThreadExecutor(threads), simd) == expected);
     }
   }
+}
+
+TEST_CASE("no iso value of a level goes beyond the bound", "[pyramid]") {
+  // A thin shell that all but fades away on the coarsest level.
+  const Pyramid pyramid = build(72, 3, [](double x, double y, double z) {
+    return ball(x, y, z, 35.5, 28) * (1.0 - ball(x, y, z, 35.5, 26.5)) * 0.9;
+  });
+  const auto isos = [&](double bound) {
+    return plc::covering_isos(pyramid, 0.45, true, bound, kSerial, plc::best_simd_target());
+  };
+  REQUIRE(isos(0.0).back() < 0.3);
+  REQUIRE(isos(0.3).back() == 0.3);
 }
