@@ -6,7 +6,8 @@ namespace plc {
 
 // Values in [0,1], x fastest. A point p of mesh space lies at voxel coordinate
 // scale * p + offset on each axis (voxel centres at integers), clamped to the image: outside, the
-// border voxels are replicated (paper, 4.2).
+// border voxels are replicated (paper, 4.2). No coordinate makes a kernel read outside the image: a
+// NaN counts as the image's lower border.
 struct ImageView {
   const float* data = nullptr;
   int32_t dims[3] = {0, 0, 0};  // each >= 2; the product is below 2^31

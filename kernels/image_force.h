@@ -8,7 +8,8 @@
 
 namespace plc::kernels {
 
-// values[i] = trilinear interpolation of the image at position[i].
+// values[i] = trilinear interpolation of the image at position[i], i = begin .. end-1, any range:
+// lerp(a, b, t) = a + (b - a) t along x, then y, then z.
 void sample_trilinear(SimdTarget simd, const ImageView& image, const Packed* position,
                       uint32_t begin, uint32_t end, float* values);
 

@@ -36,12 +36,12 @@ struct Rk4Coefficients {
 void rk4_stage(SimdTarget simd, int stage, const Rk4Coefficients& coefficients,
                const Rk4Streams& streams, uint32_t begin, uint32_t end);
 
-// The longest squared displacement of the range (0 for none).
+// The longest squared displacement of the range (0 for none; NaN is passed over).
 float max_squared(SimdTarget simd, const float* dx, const float* dy, const float* dz,
                   uint32_t begin, uint32_t end);
 
 // The speed bound of 3.6: |d| > max_length is scaled down to max_length, |velocity| > max_speed
-// down to max_speed.
+// down to max_speed (up to rounding); shorter ones keep their bits.
 void clamp_movement(SimdTarget simd, float max_length, float max_speed, float* dx, float* dy,
                     float* dz, float* vx, float* vy, float* vz, uint32_t begin, uint32_t end);
 
@@ -49,7 +49,7 @@ void clamp_movement(SimdTarget simd, float max_length, float max_speed, float* d
 void move(SimdTarget simd, const float* dx, const float* dy, const float* dz, float* px, float* py,
           float* pz, Packed* packed, float* path, uint32_t begin, uint32_t end);
 
-// Sum over the range of (d . n)^2 in double, 16 lane sums added pairwise: the kinetic energy along
+// Sum over the range of (d . n)^2 in double, in the order of lane_sum.h: the kinetic energy along
 // the normals (5.1) up to m / (2 s (delta dt)^2).
 double normal_energy_sum(SimdTarget simd, const float* dx, const float* dy, const float* dz,
                          const float* nx, const float* ny, const float* nz, uint32_t begin,

@@ -7,10 +7,12 @@
 
 // Ranges [begin, end): begin and end are multiples of kRingLanes. Output streams are written for
 // every vertex of the range, 0 for deleted vertices and padding. Bits do not depend on `simd`:
-// every vertex sums its ring from slot 0 up, one operation at a time.
+// every vertex sums its ring from slot 0 up, one operation at a time; a mean is that sum times
+// 1/valence.
 namespace plc::kernels {
 
-// laplacian[v] = mean of the neighbours of v minus v, w = 0.
+// laplacian[v] = mean of the neighbours of v minus v (as the mean of the differences, which keeps
+// digits that a mean of coordinates far from 0 loses), w = 0.
 void laplacian(SimdTarget simd, const RingView& ring, const Packed* position, uint32_t begin,
                uint32_t end, Packed* laplacian);
 
@@ -22,8 +24,8 @@ void curvature_force(SimdTarget simd, const RingView& ring, const Packed* laplac
 void spring_force(SimdTarget simd, const RingView& ring, const Packed* position, float alpha_e,
                   float rest_length, uint32_t begin, uint32_t end, float* fx, float* fy, float* fz);
 
-// Unit normal, outward: the sum of the cross products of successive ring edges, normalised;
-// 0 where the sum is 0.
+// Unit normal, outward: the sum of the cross products of successive ring edges (the face between
+// the last slot and slot 0 comes last), normalised; 0 where the sum is 0.
 void normals(SimdTarget simd, const RingView& ring, const Packed* position, uint32_t begin,
              uint32_t end, float* nx, float* ny, float* nz);
 
@@ -34,7 +36,7 @@ void edge_violations(SimdTarget simd, const RingView& ring, const Packed* positi
                      uint8_t* flags);
 
 // Sum of the lengths of all edges seen from each vertex of the range (each edge of a mesh counts
-// twice over the mesh). The same bits for every target: 16 lane sums in double, added pairwise.
+// twice over the mesh): each ring in float, the vertices in double in the order of lane_sum.h.
 double edge_length_sum(SimdTarget simd, const RingView& ring, const Packed* position,
                        uint32_t begin, uint32_t end);
 

@@ -6,6 +6,7 @@
 
 namespace plc {
 
+// Kernels trust the caller: only available targets may be asked for.
 enum class SimdTarget : uint8_t { kScalar, kSse4, kAvx2, kAvx512 };
 
 // The best target of this machine.

@@ -52,12 +52,12 @@ Status build_pyramid(const VolumeView& volume, const PyramidSpec& spec, const Ex
 // The part of the object that a coarse level may lose from sight; see covering_isos.
 inline constexpr double kUncoveredPart = 0.05;
 
-// The iso value of each level, in [0,1]: that of I_0, and on a coarse level the one nearest to it at
-// which the level's object (>= iso when inside_above, else <= iso) still holds the centres of all but
-// kUncoveredPart of the voxels of the object on I_0, but never beyond `bound`: what surrounds the
-// object would be taken for it. Thin parts fade on coarse levels (4.2, 5.3): at one value for all
-// they would be lost there, and a surface that has shrunk past a part does not come back to it.
-// result[0] == iso_0; all lie in (0,1). The same for any executor and target.
+// The iso value of each level, in [0,1]: that of I_0, and on a coarse level the one nearest to it
+// at which the level's object (>= iso when inside_above, else <= iso) still holds the centres of
+// all but kUncoveredPart of the voxels of the object on I_0, but never beyond `bound`: what
+// surrounds the object would be taken for it. Thin parts fade on coarse levels (4.2, 5.3): at one
+// value for all they would be lost there, and a surface that has shrunk past a part does not come
+// back to it. result[0] == iso_0; all lie in (0,1). The same for any executor and target.
 std::vector<double> covering_isos(const Pyramid& pyramid, double iso_0, bool inside_above,
                                   double bound, const Executor& executor, SimdTarget simd);
 
