@@ -39,7 +39,8 @@ Pyramid build(int64_t size, int levels, const Value& value) {
 }
 
 std::vector<double> isos_of(const Pyramid& pyramid, double iso_0, bool above) {
-  return plc::covering_isos(pyramid, iso_0, above, above ? 0.0 : 1.0, kSerial, plc::best_simd_target());
+  return plc::covering_isos(pyramid, iso_0, above, above ? 0.0 : 1.0, kSerial,
+                            plc::best_simd_target());
 }
 
 // 1 inside the radius, 0 outside, linear over one voxel between; off the symmetries of the grid.
@@ -175,7 +176,8 @@ TEST_CASE("iso values do not depend on the target or the threads", "[pyramid]") 
       plc::covering_isos(pyramid, 0.5, true, 0.0, kSerial, plc::SimdTarget::kScalar);
   for (const plc::SimdTarget simd : plc::available_simd_targets()) {
     for (const unsigned threads : {1U, 4U}) {
-      REQUIRE(plc::covering_isos(pyramid, 0.5, true, 0.0, ThreadExecutor(threads), simd) == expected);
+      REQUIRE(plc::covering_isos(pyramid, 0.5, true, 0.0, ThreadExecutor(threads), simd) ==
+              expected);
     }
   }
 }
