@@ -1,9 +1,11 @@
 #include "engine/evolution.h"
 
+#include "engine/self_meeting.h"
+
 namespace plc {
 
 Evolution::Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model)
-    : mesh_(mesh), dynamics_(mesh, schedule, simd, model), guard_(mesh, schedule),
+    : mesh_(mesh), schedule_(schedule), dynamics_(mesh, schedule, simd, model), guard_(mesh, schedule),
       resolution_(mesh, schedule, simd) {}
 
 void Evolution::restart() { resolution_.restart(); }
@@ -28,6 +30,17 @@ void Evolution::check_all(Seconds& seconds, OperationCounts& counts) {
   const double end = now();
   seconds.topology += end - start;
   seconds.total += end - start;
+}
+
+bool Evolution::embedded() {
+  const auto meeting = meeting_faces(mesh_, schedule_);
+  for (const auto& face : meeting) {
+    for (const uint32_t v : face) {
+      mesh_.risk[v] = 1;
+      mesh_.wake(v);
+    }
+  }
+  return meeting.empty();
 }
 
 }  // namespace plc

@@ -3,6 +3,7 @@
 #include "engine/dynamics.h"
 #include "engine/motion_guard.h"
 #include "engine/resolution.h"
+#include "engine/schedule.h"
 #include "engine/statistics.h"
 
 namespace plc {
@@ -18,11 +19,15 @@ class Evolution {
   void iterate(const ImageView& image, float iso, Seconds& seconds, OperationCounts& counts);
   // The constraints of all vertices, without a movement: at the end of a level.
   void check_all(Seconds& seconds, OperationCounts& counts);
+  // Tests all faces, not only those at risk. False when some meet; their vertices are at risk from
+  // then on, so that the next iterations part them.
+  bool embedded();
   // Kinetic energy along the normals of the last iteration (5.1).
   double energy() const { return dynamics_.energy(); }
 
  private:
   Mesh& mesh_;
+  const Schedule& schedule_;
   Dynamics dynamics_;
   MotionGuard guard_;
   Resolution resolution_;
