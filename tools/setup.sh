@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Installs what is missing of the Debian packages that the named purposes need:
+#   tools/setup.sh [build] [test] [demo] [lint]
+# Does nothing, and needs no rights and no network, where all of them are there.
+set -euo pipefail
+
+build=(g++ cmake make libhwy-dev libtbb-dev libmimalloc-dev libinsighttoolkit5-dev libarchive-dev
+  libexpat1-dev zlib1g-dev libembree-dev libpng-dev libcli11-dev nlohmann-json3-dev)
+test=(catch2)
+demo=(invesalius-examples)
+lint=(clang-format clang-tidy)
+
+wanted=()
+for purpose in "$@"; do
+  case $purpose in
+    build) wanted+=("${build[@]}") ;;
+    test) wanted+=("${test[@]}") ;;
+    demo) wanted+=("${demo[@]}") ;;
+    lint) wanted+=("${lint[@]}") ;;
+    *) echo "setup.sh: unknown purpose $purpose: build, test, demo or lint" >&2; exit 2 ;;
+  esac
+done
+
+missing=()
+for package in "${wanted[@]}"; do
+  status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+  [ "$status" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null; then
+    echo "Needed, and only root can install them: apt-get install ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+echo "Installing ${missing[*]}"
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y)
+"${apt[@]}" update </dev/null
+"${apt[@]}" install --no-install-recommends "${missing[@]}" </dev/null
