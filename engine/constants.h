@@ -58,6 +58,9 @@ inline constexpr float kRiskReach = 3.0F;
 // ... whose normals are turned against a vertex's own by more than this cosine. Higher tests more
 // faces; from 0.5 down to 0.2 no run was seen to differ.
 inline constexpr float kRiskDot = 0.3F;
+// ... unless a plane lies between the faces of both with this much room, in delta: twice what a vertex
+// moves between two checks.
+inline constexpr float kRiskGap = 2 * kCheckPath;
 
 // Components up to this size are watched for turning inside out.
 inline constexpr uint32_t kTinyComponent = 40;

@@ -1,8 +1,20 @@
 #include "engine/evolution.h"
 
+#include <cassert>
+
+#include "engine/mesh_invariants.h"
 #include "engine/self_meeting.h"
 
 namespace plc {
+
+namespace {
+
+// The promise of every iteration; debug builds hold it to it.
+[[maybe_unused]] bool sound(const Mesh& mesh, const Executor& executor) {
+  return broken_invariant(mesh).empty() && meeting_faces(mesh, executor).empty();
+}
+
+}  // namespace
 
 Evolution::Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model)
     : mesh_(mesh), schedule_(schedule), dynamics_(mesh, schedule, simd, model), guard_(mesh, schedule),
@@ -18,6 +30,7 @@ void Evolution::iterate(const ImageView& image, float iso, Seconds& seconds,
   const auto& due = resolution_.take_due(false);
   counts.reverted += guard_.take_back(dynamics_.before(), due, resolution_.hash());
   resolution_.run(++iteration_, counts);
+  assert(sound(mesh_, schedule_));
   const double end = now();
   seconds.topology += end - moved;
   seconds.total += end - start;

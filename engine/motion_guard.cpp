@@ -1,6 +1,7 @@
 #include "engine/motion_guard.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/constants.h"
 #include "engine/edge.h"
@@ -69,9 +70,32 @@ bool MotionGuard::at_risk(uint32_t v, const SpatialHash& hash) const {
   bool risk = false;
   hash.visit_box(mesh_, p - span, p + span, [&](uint32_t w, Vec3 q) {
     if (risk || w == v || squared_distance(p, q) > reach * reach) return;
-    risk = dot(n, mesh_.normal.at(w)) <= kRiskDot && !ring.contains(w);
+    risk = dot(n, mesh_.normal.at(w)) <= kRiskDot && !ring.contains(w) && !apart(v, ring, w);
   });
   return risk;
+}
+
+// A plane across the normal of v or of w lies between their faces, with room on both sides. They
+// may face each other, or turn their backs.
+bool MotionGuard::apart(uint32_t v, const Neighbors& ring, uint32_t w) const {
+  const float gap = kRiskGap * static_cast<float>(mesh_.delta);
+  const Neighbors other = mesh_.ring(w);
+  const auto extent = [&](uint32_t centre, const Neighbors& around, Vec3 axis) {
+    float low = dot(mesh_.at(centre), axis);
+    float high = low;
+    for (const uint32_t x : around) {
+      const float at = dot(mesh_.at(x), axis);
+      low = std::min(low, at);
+      high = std::max(high, at);
+    }
+    return std::pair{low, high};
+  };
+  for (const Vec3 axis : {mesh_.normal.at(v), mesh_.normal.at(w)}) {
+    const auto [low_v, high_v] = extent(v, ring, axis);
+    const auto [low_w, high_w] = extent(w, other, axis);
+    if (low_w - high_v >= gap || low_v - high_w >= gap) return true;
+  }
+  return false;
 }
 
 }  // namespace plc
