@@ -51,32 +51,32 @@ class Declarations {
 
   void grid() {
     text("--size", "NX,NY,NZ", "the phantom's own", "Voxels, or one number for a cube",
-         [this](const std::string& s) {
+         [&o = o_](const std::string& s) {
            auto n = to_integers("--size", s, 0);
            if (n.size() == 1) n.resize(3, n[0]);
            if (n.size() != 3) refuse_value("--size", s, "one integer or three");
-           for (size_t i = 0; i < 3; ++i) o_.size[i] = n[i];
+           for (size_t i = 0; i < 3; ++i) o.size[i] = n[i];
          });
     text("--spacing", "X,Y,Z",
          text_of(o_.spacing[0]) + "," + text_of(o_.spacing[1]) + "," + text_of(o_.spacing[2]),
-         "Millimetres between voxels; the shapes are round in mm", [this](const std::string& s) {
+         "Millimetres between voxels; the shapes are round in mm", [&o = o_](const std::string& s) {
            const auto v = to_numbers("--spacing", s, 3);
-           std::copy(v.begin(), v.end(), o_.spacing);
+           std::copy(v.begin(), v.end(), o.spacing);
          });
     text("--type", "u8|i16|u16|i32|f32", "the phantom's own",
          "Voxel type; full scale is 255 in u8, 1000 in the other integer types, 1 in f32",
-         [this](const std::string& s) { o_.type = to_choice("--type", s, kTypes); });
+         [&o = o_](const std::string& s) { o.type = to_choice("--type", s, kTypes); });
   }
 
   void shape() {
     text("--noise", "SIGMA", "the phantom's own", "Noise added, in units of full scale, >= 0",
-         [this](const std::string& s) { o_.noise = to_number("--noise", s); });
+         [&o = o_](const std::string& s) { o.noise = to_number("--noise", s); });
     text("--seed", "N", std::to_string(o_.seed), "Seed of shapes and noise",
-         [this](const std::string& s) { o_.seed = to_seed(s); });
+         [&o = o_](const std::string& s) { o.seed = to_seed(s); });
     text("--count", "N", "the phantom's own", "Blobs, or trees of vessels",
-         [this](const std::string& s) { o_.count = to_integer("--count", s); });
+         [&o = o_](const std::string& s) { o.count = to_integer("--count", s); });
     text("--depth", "N", "the phantom's own", "Recursion of sierpinski, branching of vessels",
-         [this](const std::string& s) { o_.depth = to_integer("--depth", s); });
+         [&o = o_](const std::string& s) { o.depth = to_integer("--depth", s); });
   }
 
  private:

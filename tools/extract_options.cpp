@@ -101,14 +101,14 @@ class Declarations {
     text("--level-iso", "V,...", "derived",
          "Value of the surface on each level from the coarsest to the full image, in the image's "
          "units; by default those at which the level's object covers that of the full image",
-         [this](const std::string& s) { read_level_isos(s, p_); });
+         [&p = p_](const std::string& s) { read_level_isos(s, p); });
     text("--window", "LO,HI", "derived",
          "Values that are mapped to 0 and 1, in the image's units; iso lies between them",
-         [this](const std::string& s) {
+         [&p = p_](const std::string& s) {
            const auto v = to_numbers("--window", s, 2);
            if (!(v[0] < v[1])) refuse_value("--window", s, "a low value and a higher one");
-           p_.window_low = v[0];
-           p_.window_high = v[1];
+           p.window_low = v[0];
+           p.window_high = v[1];
          });
     number("--pad", p_.pad_value,
            "Value that surrounds the image, so that objects cut by its border come out closed, in "
@@ -118,9 +118,9 @@ class Declarations {
   void pyramid() {
     text("--levels", "M", "3, fewer for small images",
          "Levels of the pyramid above the full image; 0: direct, without a pyramid",
-         [this](const std::string& s) {
-           p_.levels = to_integer("--levels", s);
-           if (p_.levels < 0 || p_.levels >= PLC_MAX_LEVELS) {
+         [&p = p_](const std::string& s) {
+           p.levels = to_integer("--levels", s);
+           if (p.levels < 0 || p.levels >= PLC_MAX_LEVELS) {
              refuse_value("--levels", s, "within 0 .. " + std::to_string(PLC_MAX_LEVELS - 1));
            }
          });
@@ -130,7 +130,7 @@ class Declarations {
     text("--init", "bubble|bubbles=NX,NY,NZ", init_text(p_),
          "Start from one bubble around the object, or from a grid of bubbles over the image, each "
          "count 1 .. 256",
-         [this](const std::string& s) { read_init(s, p_); });
+         [&p = p_](const std::string& s) { read_init(s, p); });
   }
 
   void model() {
@@ -140,7 +140,7 @@ class Declarations {
     text("--rest-length", "zero|mean|VALUE", rest_length_text(p_),
          "Rest length of edges: zero (shrinks), their mean, or a value in units of delta, the "
          "mesh's resolution",
-         [this](const std::string& s) { read_rest_length(s, p_); });
+         [&p = p_](const std::string& s) { read_rest_length(s, p); });
     number("--attraction", p_.attraction, "|alpha_I|, attraction to the value of the surface, > 0");
     number("--mass", p_.mass, "Mass of a vertex, > 0");
     number("--damping", p_.damping, "Friction gamma, mass per time, >= 0");
@@ -155,14 +155,14 @@ class Declarations {
            "(delta / time step)^2, falls below this; above 0, at most 1");
     text("--max-iterations", "N", std::to_string(p_.max_iterations),
          "Iterations of a level at most, >= 1",
-         [this](const std::string& s) { p_.max_iterations = to_integer("--max-iterations", s); });
+         [&p = p_](const std::string& s) { p.max_iterations = to_integer("--max-iterations", s); });
   }
 
   void machine() {
     text("--threads", "N", "one per core", "Threads, 1 .. 1024; results do not depend on it",
-         [this](const std::string& s) {
-           options_.context.threads = to_integer("--threads", s);
-           if (options_.context.threads < 1) refuse_value("--threads", s, "at least 1");
+         [&options = options_](const std::string& s) {
+           options.context.threads = to_integer("--threads", s);
+           if (options.context.threads < 1) refuse_value("--threads", s, "at least 1");
          });
     choice("--simd", kSimds, options_.context.simd, "Instruction set; results do not depend on it");
   }
