@@ -122,6 +122,7 @@ ItkHeader slice_header(const std::string& file, ItkFormat format) {
   bool single = header.dims.size() >= 2;
   for (size_t axis = 2; axis < header.dims.size(); ++axis) single &= header.dims[axis] == 1;
   if (!single) throw Failure{file + ": holds more than one slice, in a folder of several files"};
+  check_file_size(file, format, header);
   return header;
 }
 
@@ -154,11 +155,29 @@ LoadedVolume assemble(const std::string& folder, ItkFormat format, const std::ve
   return volume_from(folder, header, std::move(voxels));
 }
 
-// Sorts the slices along their common normal, which it returns with the distance between them.
+// The third axis of a stack of slices and the distance between them along it.
 struct Stack {
-  double normal[3];
+  double axis[3];
   double spacing;
 };
+
+// The slices of a tilted gantry are shifted sideways by the same step each: the axis leans.
+void lean(Stack& stack, const std::vector<Slice>& slices) {
+  constexpr double kUpright = 1e-3;  // sine of the angle; below are the roundings of headers
+  double step[3];
+  double squared = 0;
+  for (int i = 0; i < 3; ++i) {
+    step[i] = (slices.back().header.origin[i] - slices.front().header.origin[i]) /
+              static_cast<double>(slices.size() - 1);
+    squared += step[i] * step[i];
+  }
+  const double length = std::sqrt(squared);
+  if (squared - stack.spacing * stack.spacing <= kUpright * kUpright * squared) return;
+  for (int i = 0; i < 3; ++i) stack.axis[i] = step[i] / length;
+  stack.spacing = length;
+}
+
+// Sorts the slices along their common normal.
 Stack sort_by_position(const std::string& folder, std::vector<Slice>& slices) {
   constexpr double kParallel = 1e-3;  // difference of direction cosines
   constexpr double kEven = 0.1;       // of the mean distance: more is a slice lost, or two spacings
@@ -170,7 +189,7 @@ Stack sort_by_position(const std::string& folder, std::vector<Slice>& slices) {
         throw Failure{slice.file + ": is not parallel to the other slices of its series"};
       }
     }
-    for (int i = 0; i < 3; ++i) slice.position += stack.normal[i] * slice.header.origin[i];
+    for (int i = 0; i < 3; ++i) slice.position += stack.axis[i] * slice.header.origin[i];
   }
   std::stable_sort(slices.begin(), slices.end(),
                    [](const Slice& a, const Slice& b) { return a.position < b.position; });
@@ -187,6 +206,7 @@ Stack sort_by_position(const std::string& folder, std::vector<Slice>& slices) {
       throw Failure{folder + text};
     }
   }
+  lean(stack, slices);
   return stack;
 }
 
@@ -196,7 +216,7 @@ LoadedVolume read_series(const std::string& folder, const std::vector<std::strin
   const Stack stack = sort_by_position(folder, slices);
   ItkHeader header = slices.front().header;
   header.spacing[2] = stack.spacing;
-  for (int row = 0; row < 3; ++row) header.direction[3 * row + 2] = stack.normal[row];
+  for (int row = 0; row < 3; ++row) header.direction[3 * row + 2] = stack.axis[row];
   return assemble(folder, ItkFormat::kDicom, slices, std::move(header));
 }
 

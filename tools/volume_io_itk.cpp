@@ -1,6 +1,8 @@
 #include "tools/volume_io_itk.h"
 
 #include <fcntl.h>
+#include <gdcmImageHelper.h>
+#include <gdcmReader.h>
 #include <itkGDCMImageIO.h>
 #include <itkGDCMSeriesFileNames.h>
 #include <itkMetaImageIO.h>
@@ -11,6 +13,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 
 #include "tools/volume_io.h"
@@ -59,6 +62,12 @@ std::string one_line(const itk::ExceptionObject& exception) {
   if (text.rfind(prefix, 0) == 0) text.erase(0, prefix.size());
   const size_t address = text.find("): ");  // "NrrdImageIO(0x55d0c8): Read: ..."
   if (address != std::string::npos && text.find("(0x") < address) text.erase(0, address + 3);
+  const std::string nrrd = "[nrrd] ";  // a stack of messages, the cause last
+  const size_t cause = text.rfind(nrrd);
+  if (cause != std::string::npos) {
+    const size_t colon = text.find(": ", cause);
+    text.erase(0, colon != std::string::npos ? colon + 2 : cause + nrrd.size());
+  }
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
   text.erase(
@@ -200,6 +209,11 @@ ItkHeader read_itk_header(const std::string& path, ItkFormat format) {
     }
     ItkHeader header = header_of(*reader);
     header.component = component_of(path, *reader);
+    if (format == ItkFormat::kTiff &&
+        (header.component == ItkComponent::kU32 || header.component == ItkComponent::kI32)) {
+      // ITK 5.2 takes them for i32 and reads zeros.
+      throw Failure{path + ": is a TIFF file of 32-bit integers, which is not supported"};
+    }
     return header;
   });
 }
@@ -221,6 +235,30 @@ void read_itk_voxels(const std::string& path, ItkFormat format, const ItkHeader&
     }
     reader->SetIORegion(region);
     reader->Read(voxels);
+  });
+}
+
+void check_dicom_size(const std::string& path) {
+  guarded(path, "its DICOM header cannot be read", [&] {
+    const gdcm::Tag pixel_data(0x7fe0, 0x0010);  // not read: the reader stops at its first byte
+    gdcm::Reader reader;
+    reader.SetFileName(path.c_str());
+    if (!reader.ReadUpToTag(pixel_data, {pixel_data}))
+      throw Failure{path + ": its DICOM header cannot be read"};
+    const gdcm::TransferSyntax syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
+    if (syntax.IsEncapsulated() || syntax == gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian) {
+      return;  // compressed: the decoder notices
+    }
+    const std::vector<unsigned> dims = gdcm::ImageHelper::GetDimensionsValue(reader.GetFile());
+    const gdcm::PixelFormat format = gdcm::ImageHelper::GetPixelFormatValue(reader.GetFile());
+    uint64_t needed = format.GetPixelSize();
+    for (const unsigned dim : dims) needed *= dim;
+    const uint64_t size = std::filesystem::file_size(path);
+    const uint64_t begin = reader.GetStreamCurrentPosition();
+    if (size - std::min(size, begin) < needed) {
+      throw Failure{path + ": is truncated (" + std::to_string(size) + " bytes, pixels from " +
+                    std::to_string(begin) + " need " + std::to_string(needed) + ")"};
+    }
   });
 }
 

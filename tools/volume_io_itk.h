@@ -29,6 +29,9 @@ ItkHeader read_itk_header(const std::string& path, ItkFormat format);
 void read_itk_voxels(const std::string& path, ItkFormat format, const ItkHeader& header,
                      std::byte* voxels);
 
+// Throws Failure where the pixel data of an uncompressed DICOM file end early.
+void check_dicom_size(const std::string& path);
+
 // The files of the largest DICOM series of a folder (in no promised order) and the number of
 // series; none where there is no DICOM file.
 struct DicomSeries {
