@@ -1,15 +1,26 @@
 #include "engine/schedule.h"
 
 #include <oneapi/tbb/flow_graph.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <chrono>
+#include <optional>
 
 namespace plc {
 
 struct Schedule::Arena {
-  explicit Arena(int threads) : tbb(threads) {}
+  explicit Arena(int threads) : tbb(threads) {
+    // More threads than cores: oneTBB would warn on stderr and leave it at the cores. The control
+    // is process-wide and the smallest one counts, so there is none where it is not needed.
+    if (threads > oneapi::tbb::info::default_concurrency()) {
+      limit.emplace(oneapi::tbb::global_control::max_allowed_parallelism,
+                    static_cast<size_t>(threads));
+    }
+  }
+  std::optional<oneapi::tbb::global_control> limit;
   oneapi::tbb::task_arena tbb;
 };
 
