@@ -38,6 +38,11 @@ struct Streams3 {
 // Not thread-safe; distinct vertices may be written concurrently where a pass says so.
 class Mesh {
  public:
+  Mesh() = default;
+  // No copies: their view would be of the original's rings.
+  Mesh(Mesh&&) = default;
+  Mesh& operator=(Mesh&&) = default;
+
   Streams3 position, velocity, normal, displacement;
   Buffer<Packed> packed;
   Buffer<float> path;
