@@ -4,6 +4,7 @@
 
 #include "kernel_fixtures.h"
 #include "kernels/scalar.h"
+#include "limited_memory.h"
 
 namespace {
 
@@ -93,3 +94,17 @@ TEST_CASE("a white image stays within one", "[pyramid]") {
     REQUIRE(value > 0.999999F);
   }
 }
+
+#if FIXTURES_CAN_LIMIT_MEMORY
+TEST_CASE("a tile without memory for its rows is reported", "[pyramid]") {
+  const Dims from{int64_t{1} << 22, 2, 2}, to{int64_t{1} << 21, 1, 1};
+  std::array<plc::AxisTaps, 3> taps;
+  for (size_t a = 0; a < 3; ++a) taps[a] = plc::make_axis_taps(from[a], to[a], 1.0);
+  const std::vector<float> in(volume(from));
+  std::vector<float> out(volume(to));
+  const plc::SerialExecutor serial;
+  const MemoryLimit limit(size_t{64} << 20);  // transposed rows take 256 MB
+  REQUIRE_FALSE(
+      plc::reduce_image(in.data(), from, taps, to, serial, SimdTarget::kScalar, out.data()));
+}
+#endif
