@@ -13,11 +13,21 @@ constexpr int kMaxThreads = 1024;
 
 bool target_of(plc_simd simd, plc::SimdTarget& target) {
   switch (simd) {
-    case PLC_SIMD_AUTO: target = plc::best_simd_target(); return true;
-    case PLC_SIMD_SCALAR: target = plc::SimdTarget::kScalar; return true;
-    case PLC_SIMD_SSE4: target = plc::SimdTarget::kSse4; return true;
-    case PLC_SIMD_AVX2: target = plc::SimdTarget::kAvx2; return true;
-    case PLC_SIMD_AVX512: target = plc::SimdTarget::kAvx512; return true;
+    case PLC_SIMD_AUTO:
+      target = plc::best_simd_target();
+      return true;
+    case PLC_SIMD_SCALAR:
+      target = plc::SimdTarget::kScalar;
+      return true;
+    case PLC_SIMD_SSE4:
+      target = plc::SimdTarget::kSse4;
+      return true;
+    case PLC_SIMD_AVX2:
+      target = plc::SimdTarget::kAvx2;
+      return true;
+    case PLC_SIMD_AVX512:
+      target = plc::SimdTarget::kAvx512;
+      return true;
   }
   return false;
 }
@@ -35,7 +45,9 @@ plc_status refuse(char* error, size_t error_size, plc_status status, const std::
 
 extern "C" {
 
-const char* plc_version_string(void) { return PLC_VERSION; }
+const char* plc_version_string(void) {
+  return PLC_VERSION;
+}
 
 void plc_context_options_defaults(plc_context_options* options) {
   *options = {};
@@ -66,9 +78,9 @@ plc_status plc_context_create(const plc_context_options* options, plc_context** 
     return refuse(error, error_size, PLC_INVALID_ARGUMENT, "simd: not a plc_simd");
   }
   if (!plc::simd_target_available(target)) {
-    return refuse(error, error_size, PLC_INVALID_ARGUMENT,
-                  "simd " + std::string(plc::simd_target_name(target)) +
-                      ": this machine does not have it");
+    return refuse(
+        error, error_size, PLC_INVALID_ARGUMENT,
+        "simd " + std::string(plc::simd_target_name(target)) + ": this machine does not have it");
   }
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   try {
@@ -79,10 +91,16 @@ plc_status plc_context_create(const plc_context_options* options, plc_context** 
   return PLC_OK;
 }
 
-void plc_context_destroy(plc_context* context) { delete context; }
+void plc_context_destroy(plc_context* context) {
+  delete context;
+}
 
-const char* plc_context_message(const plc_context* context) { return context->message.c_str(); }
-int plc_context_threads(const plc_context* context) { return context->schedule.threads(); }
+const char* plc_context_message(const plc_context* context) {
+  return context->message.c_str();
+}
+int plc_context_threads(const plc_context* context) {
+  return context->schedule.threads();
+}
 const char* plc_context_simd(const plc_context* context) {
   return plc::simd_target_name(context->simd).data();
 }
@@ -116,7 +134,7 @@ void plc_parameters_defaults(plc_parameters* p) {
   p->bound = PLC_BOUND_CLAMP;
   p->anisotropy = PLC_ANISOTROPY_VOXEL;
   p->epsilon = 5e-6;
-  p->max_iterations = 1000;
+  p->max_iterations = 500;
 }
 
 }  // extern "C"

@@ -23,8 +23,8 @@ Status check_image(const plc_image& image) {
                                            " voxels: at least 2 are needed on every axis"};
     }
     if (!(image.spacing[i] > 0) || !std::isfinite(image.spacing[i])) {
-      return {ErrorCode::kInvalidData, "image: spacing " + std::to_string(image.spacing[i]) +
-                                           " is not a positive length"};
+      return {ErrorCode::kInvalidData,
+              "image: spacing " + std::to_string(image.spacing[i]) + " is not a positive length"};
     }
     if (!std::isfinite(image.origin[i])) {
       return {ErrorCode::kInvalidData, "image: the origin is not finite"};
@@ -85,13 +85,12 @@ class Extraction {
     }
     const bool above = p.inside_below == 0;
     double background = 0;
-    if (Status s =
-            derive_parameters(volume_, surface_->range, context_.schedule, p, background);
+    if (Status s = derive_parameters(volume_, surface_->range, context_.schedule, p, background);
         !s.ok()) {
       return s;
     }
-    if (Status s = build_pyramid(volume_, pyramid_spec(p), context_.schedule, context_.simd,
-                                 pyramid_);
+    if (Status s =
+            build_pyramid(volume_, pyramid_spec(p), context_.schedule, context_.simd, pyramid_);
         !s.ok()) {
       return s;
     }

@@ -25,8 +25,8 @@ Affine affine_of(const plc_surface& surface, plc_space space) {
     for (int i = 0; i < 3; ++i) {
       // RAS is LPS with x and y turned round.
       const double sign = space == PLC_SPACE_RAS && i < 2 ? -1 : 1;
-      a.m[3 * i + j] = sign * surface.direction[static_cast<size_t>(3 * i + j)] *
-                       surface.spacing[axis] * voxels;
+      a.m[3 * i + j] =
+          sign * surface.direction[static_cast<size_t>(3 * i + j)] * surface.spacing[axis] * voxels;
       a.t[i] = sign * surface.origin[static_cast<size_t>(i)];
     }
   }
@@ -45,7 +45,9 @@ bool mirrors(const Affine& a) {
 
 extern "C" {
 
-void plc_surface_destroy(plc_surface* surface) { delete surface; }
+void plc_surface_destroy(plc_surface* surface) {
+  delete surface;
+}
 
 int64_t plc_surface_vertex_count(const plc_surface* surface) {
   return surface->mesh.vertex_count();
@@ -106,7 +108,9 @@ void plc_surface_normals(const plc_surface* surface, plc_space space, float* xyz
   }
 }
 
-uint64_t plc_surface_hash(const plc_surface* surface) { return plc::state_hash(surface->mesh); }
+uint64_t plc_surface_hash(const plc_surface* surface) {
+  return plc::state_hash(surface->mesh);
+}
 
 int plc_surface_level_count(const plc_surface* surface) {
   return static_cast<int>(surface->records.size());

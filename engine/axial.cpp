@@ -23,8 +23,8 @@ std::vector<uint32_t> create_intermediary(Mesh& mesh, uint32_t u, const Neighbor
   const uint32_t d = ring.size();
   std::vector<uint32_t> p;
   for (uint32_t i = 0; i < d; ++i) {
-    const Vec3 speed = mesh.velocity.at(u) +
-                       (mesh.velocity.at(ring[i]) - mesh.velocity.at(u)) * kAxialReach;
+    const Vec3 speed =
+        mesh.velocity.at(u) + (mesh.velocity.at(ring[i]) - mesh.velocity.at(u)) * kAxialReach;
     p.push_back(mesh.create(points[i], speed));
     mesh.operations[p.back()] = mesh.operations[u];
   }

@@ -9,11 +9,11 @@ namespace plc {
 
 // In the order in which they are resolved: annular before axial (3.3).
 enum class Operation : uint8_t {
-  kAnnular,   // cycle u, v, a
-  kDeletion,  // of edge u-v
-  kInversion, // of edge u-v
-  kCreation,  // on edge u-v
-  kAxial      // between u and v
+  kAnnular,    // cycle u, v, a
+  kDeletion,   // of edge u-v
+  kInversion,  // of edge u-v
+  kCreation,   // on edge u-v
+  kAxial       // between u and v
 };
 
 struct Candidate {

@@ -47,19 +47,19 @@ inline constexpr float kAnnularRetreat = 0.55F;
 // approach. A blind exemption lets sheets cross.
 inline constexpr uint32_t kCutExemption = 5;
 
-// The embedding guard looks for faces with a corner within this of the new ones, in delta: a point of
-// a triangle is within 1 / sqrt 3 of its longest edge of a corner, so that faces with edges up to
-// 3.46 delta are found. Edges reach 2.5 delta by (2) and 0.8 more by one movement of both ends.
+// The embedding guard looks for faces with a corner within this of the new ones, in delta: a point
+// of a triangle is within 1 / sqrt 3 of its longest edge of a corner, so that faces with edges up
+// to 3.46 delta are found. Edges reach 2.5 delta by (2) and 0.8 more by one movement of both ends.
 inline constexpr float kFaceReach = 2.0F;
 
-// The motion guard looks for other parts of the surface within this, in delta: (1/2 + 1/sqrt 3) of the
-// longest edge of (2), and 0.3 more for what vertices move between two checks.
+// The motion guard looks for other parts of the surface within this, in delta: (1/2 + 1/sqrt 3) of
+// the longest edge of (2), and 0.3 more for what vertices move between two checks.
 inline constexpr float kRiskReach = 3.0F;
 // ... whose normals are turned against a vertex's own by more than this cosine. Higher tests more
 // faces; from 0.5 down to 0.2 no run was seen to differ.
 inline constexpr float kRiskDot = 0.3F;
-// ... unless a plane lies between the faces of both with this much room, in delta: twice what a vertex
-// moves between two checks.
+// ... unless a plane lies between the faces of both with this much room, in delta: twice what a
+// vertex moves between two checks.
 inline constexpr float kRiskGap = 2 * kCheckPath;
 
 // Components up to this size are watched for turning inside out.

@@ -18,7 +18,10 @@ float stable_time_step(const Model& model) {
 }
 
 Dynamics::Dynamics(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model)
-    : mesh_(mesh), schedule_(schedule), simd_(simd), model_(model),
+    : mesh_(mesh),
+      schedule_(schedule),
+      simd_(simd),
+      model_(model),
       time_step_(stable_time_step(model)) {}
 
 void Dynamics::resize() {
@@ -72,8 +75,7 @@ std::vector<Pass> Dynamics::passes(const ImageView& image, float iso, Seconds& s
                    [this, image, iso] { bound(image, iso); }});
   table.push_back({"energy", kDisplacements | kNormals, kEnergy, &seconds.dynamics,
                    [this] { measure_energy(); }});
-  table.push_back(
-      {"move", kDisplacements, kPositions, &seconds.dynamics, [this] { move(); }});
+  table.push_back({"move", kDisplacements, kPositions, &seconds.dynamics, [this] { move(); }});
   return table;
 }
 
@@ -133,10 +135,24 @@ kernels::Rk4Streams Dynamics::streams(int stage) {
   const auto& p = mesh_.position;
   const auto& v = mesh_.velocity;
   auto& d = mesh_.displacement;
-  return {p.x.data(), p.y.data(), p.z.data(), v.x.data(), v.y.data(), v.z.data(),
-          force_.x.data(), force_.y.data(), force_.z.data(),
-          speed_.x.data(), speed_.y.data(), speed_.z.data(),
-          d.x.data(), d.y.data(), d.z.data(), rate_.x.data(), rate_.y.data(), rate_.z.data(),
+  return {p.x.data(),
+          p.y.data(),
+          p.z.data(),
+          v.x.data(),
+          v.y.data(),
+          v.z.data(),
+          force_.x.data(),
+          force_.y.data(),
+          force_.z.data(),
+          speed_.x.data(),
+          speed_.y.data(),
+          speed_.z.data(),
+          d.x.data(),
+          d.y.data(),
+          d.z.data(),
+          rate_.x.data(),
+          rate_.y.data(),
+          rate_.z.data(),
           stage_[(stage + 1) % 2].data()};
 }
 

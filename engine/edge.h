@@ -24,7 +24,9 @@ inline Edge edge_between(const Mesh& mesh, uint32_t u, uint32_t v) {
 }
 
 // Twice the area vector of the face (a, b, c), outward for counter-clockwise corners.
-inline Vec3 area_vector(Vec3 a, Vec3 b, Vec3 c) { return cross(b - a, c - a); }
+inline Vec3 area_vector(Vec3 a, Vec3 b, Vec3 c) {
+  return cross(b - a, c - a);
+}
 inline Vec3 area_vector(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) {
   return area_vector(mesh.at(a), mesh.at(b), mesh.at(c));
 }

@@ -29,8 +29,8 @@ std::optional<uint32_t> shortest_cycle(const Mesh& mesh, const Edge& e) {
 bool should_invert(const Mesh& mesh, const Edge& e, float squared_length) {
   const auto delta = static_cast<float>(mesh.delta);
   const Vec3 middle = midpoint(mesh.at(e.u), mesh.at(e.v));
-  const float nearest = std::min(squared_distance(middle, mesh.at(e.a)),
-                                 squared_distance(middle, mesh.at(e.b)));
+  const float nearest =
+      std::min(squared_distance(middle, mesh.at(e.a)), squared_distance(middle, mesh.at(e.b)));
   return nearest <= delta * delta &&
          squared_distance(mesh.at(e.a), mesh.at(e.b)) < squared_length && can_invert(mesh, e);
 }

@@ -49,7 +49,8 @@ bool meet(const Proposal::Face& f, const Proposal::Face& g) {
   return triangles_intersect(triangle(f), triangle(g));
 }
 
-// Faces of zero area meet nothing by the definition of triangle_intersection.h; they may not be made.
+// Faces of zero area meet nothing by the definition of triangle_intersection.h; they may not be
+// made.
 bool any_degenerate(const Proposal& proposal) {
   return std::any_of(proposal.faces.begin(), proposal.faces.end(), [](const Proposal::Face& face) {
     const auto point = [&](size_t i) {
@@ -130,8 +131,8 @@ Proposal propose_axial(const Mesh& mesh, const AxialPlan& plan) {
   const auto collar = [&](const Neighbors& ring, const std::vector<Vec3>& points, uint32_t first) {
     for (uint32_t i = 0; i < ring.size(); ++i) {
       const uint32_t j = i + 1 == ring.size() ? 0 : i + 1;
-      proposal.faces.push_back({{first + i, ring[i], ring[j]},
-                                {points[i], mesh.at(ring[i]), mesh.at(ring[j])}});
+      proposal.faces.push_back(
+          {{first + i, ring[i], ring[j]}, {points[i], mesh.at(ring[i]), mesh.at(ring[j])}});
       proposal.faces.push_back(
           {{first + i, ring[j], first + j}, {points[i], mesh.at(ring[j]), points[j]}});
     }
@@ -142,11 +143,11 @@ Proposal propose_axial(const Mesh& mesh, const AxialPlan& plan) {
     const Rung& r = plan.rungs[k];
     const Rung& n = plan.rungs[(k + 1) % plan.rungs.size()];
     if (n.i != r.i) {
-      proposal.faces.push_back({{first_p + r.i, first_p + n.i, first_q + r.j},
-                                {plan.p[r.i], plan.p[n.i], plan.q[r.j]}});
+      proposal.faces.push_back(
+          {{first_p + r.i, first_p + n.i, first_q + r.j}, {plan.p[r.i], plan.p[n.i], plan.q[r.j]}});
     } else {
-      proposal.faces.push_back({{first_q + n.j, first_q + r.j, first_p + r.i},
-                                {plan.q[n.j], plan.q[r.j], plan.p[r.i]}});
+      proposal.faces.push_back(
+          {{first_q + n.j, first_q + r.j, first_p + r.i}, {plan.q[n.j], plan.q[r.j], plan.p[r.i]}});
     }
   }
   proposal.removed_corners = {plan.u, plan.v};

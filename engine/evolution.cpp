@@ -17,10 +17,15 @@ namespace {
 }  // namespace
 
 Evolution::Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model)
-    : mesh_(mesh), schedule_(schedule), dynamics_(mesh, schedule, simd, model), guard_(mesh, schedule),
+    : mesh_(mesh),
+      schedule_(schedule),
+      dynamics_(mesh, schedule, simd, model),
+      guard_(mesh, schedule),
       resolution_(mesh, schedule, simd) {}
 
-void Evolution::restart() { resolution_.restart(); }
+void Evolution::restart() {
+  resolution_.restart();
+}
 
 void Evolution::iterate(const ImageView& image, float iso, Seconds& seconds,
                         OperationCounts& counts) {

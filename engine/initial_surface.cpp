@@ -18,11 +18,14 @@ constexpr double kIcosahedronEdge = 1.0514622242382672;
 void add_icosahedron(Mesh& mesh) {
   constexpr float kA = 0.5257311121191336F;
   constexpr float kB = 0.8506508083520399F;
-  constexpr Vec3 kCorners[12] = {{-kA, 0, kB}, {kA, 0, kB},   {-kA, 0, -kB}, {kA, 0, -kB},
-                                 {0, kB, kA},  {0, kB, -kA},  {0, -kB, kA},  {0, -kB, -kA},
-                                 {kB, kA, 0},  {-kB, kA, 0},  {kB, -kA, 0},  {-kB, -kA, 0}};
+  constexpr Vec3 kCorners[12] = {{-kA, 0, kB}, {kA, 0, kB},  {-kA, 0, -kB}, {kA, 0, -kB},
+                                 {0, kB, kA},  {0, kB, -kA}, {0, -kB, kA},  {0, -kB, -kA},
+                                 {kB, kA, 0},  {-kB, kA, 0}, {kB, -kA, 0},  {-kB, -kA, 0}};
   // Neighbours, counter-clockwise seen from outside.
-  constexpr uint32_t kRings[12][5] = {{1, 4, 9, 11, 6}, {0, 6, 10, 8, 4}, {3, 7, 11, 9, 5}, {2, 5, 8, 10, 7}, {0, 1, 8, 5, 9}, {2, 9, 4, 8, 3}, {0, 11, 7, 10, 1}, {2, 3, 10, 6, 11}, {1, 10, 3, 5, 4}, {0, 4, 5, 2, 11}, {1, 6, 7, 3, 8}, {0, 9, 2, 7, 6}};
+  constexpr uint32_t kRings[12][5] = {{1, 4, 9, 11, 6},  {0, 6, 10, 8, 4},  {3, 7, 11, 9, 5},
+                                      {2, 5, 8, 10, 7},  {0, 1, 8, 5, 9},   {2, 9, 4, 8, 3},
+                                      {0, 11, 7, 10, 1}, {2, 3, 10, 6, 11}, {1, 10, 3, 5, 4},
+                                      {0, 4, 5, 2, 11},  {1, 6, 7, 3, 8},   {0, 9, 2, 7, 6}};
   uint32_t id[12];
   for (uint32_t v = 0; v < 12; ++v) id[v] = mesh.create(kCorners[v], {});
   for (uint32_t v = 0; v < 12; ++v) {

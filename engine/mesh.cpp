@@ -33,7 +33,9 @@ void Streams3::resize(size_t n) {
   z.resize(n);
 }
 
-uint32_t Mesh::padded() const { return (slots_ + kRingLanes - 1) / kRingLanes * kRingLanes; }
+uint32_t Mesh::padded() const {
+  return (slots_ + kRingLanes - 1) / kRingLanes * kRingLanes;
+}
 
 bool Mesh::adjacent(uint32_t u, uint32_t v) const {
   const uint32_t d = valence(u);
@@ -260,8 +262,8 @@ uint64_t Mesh::bytes() const {
   const auto of = [](const auto& b) { return b.capacity() * sizeof(b[0]); };
   const auto of3 = [&](const Streams3& s) { return of(s.x) + of(s.y) + of(s.z); };
   return of3(position) + of3(velocity) + of3(normal) + of3(displacement) + of(packed) + of(path) +
-         of(idle) + of(risk) + of(operations) + of(cut_id) + of(cut_iteration) + of(columns_) + of(valence_) +
-         of(tail_);
+         of(idle) + of(risk) + of(operations) + of(cut_id) + of(cut_iteration) + of(columns_) +
+         of(valence_) + of(tail_);
 }
 
 }  // namespace plc

@@ -55,9 +55,9 @@ class Mesh {
   // The invariant of (1)-(3), mesh units.
   double delta = 1;
 
-  uint32_t slots() const { return slots_; }          // ids are below this
-  uint32_t padded() const;                           // slots, up to whole blocks
-  uint32_t vertex_count() const { return alive_; }   // not deleted
+  uint32_t slots() const { return slots_; }         // ids are below this
+  uint32_t padded() const;                          // slots, up to whole blocks
+  uint32_t vertex_count() const { return alive_; }  // not deleted
   bool alive(uint32_t v) const { return valence_[v] != 0; }
   uint32_t valence(uint32_t v) const { return valence_[v]; }
   uint32_t neighbor(uint32_t v, uint32_t k) const { return view_.slot(v, k); }

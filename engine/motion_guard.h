@@ -14,16 +14,16 @@ namespace plc {
 // faces that meet go back to where they were and lose their speed; again, until none meet: in the
 // worst case all are back where they started.
 //
-// Only faces with a vertex at risk are tested, against all. Two faces that meet share a vertex around
-// which the surface folds, or each has a corner within kRiskReach of the other's: an edge of one
-// pierces the other, and is at most half its length from the piercing point, as a corner of the
+// Only faces with a vertex at risk are tested, against all. Two faces that meet share a vertex
+// around which the surface folds, or each has a corner within kRiskReach of the other's: an edge of
+// one pierces the other, and is at most half its length from the piercing point, as a corner of the
 // pierced face is at most 1/sqrt 3 of its longest edge. There a vertex v is at risk when
 //   - the normal of one of its faces is turned by more than kRiskDot against its own, or
 //   - for a vertex w within kRiskReach that is no neighbour and has a normal turned by more than
 //     that, no plane across either normal keeps the faces of v and of w kRiskGap apart.
-// Parts whose normals agree are one sheet, or the outer two of three sheets, and then the middle one
-// is at risk with both. Like the constraints, the risk of a vertex is looked at when it is due: of
-// two vertices the later look counts, and since then neither has moved by more than kCheckPath.
+// Parts whose normals agree are one sheet, or the outer two of three sheets, and then the middle
+// one is at risk with both. Like the constraints, the risk of a vertex is looked at when it is due:
+// of two vertices the later look counts, and since then neither has moved by more than kCheckPath.
 class MotionGuard {
  public:
   MotionGuard(Mesh& mesh, const Executor& executor) : mesh_(mesh), executor_(executor) {}

@@ -41,8 +41,12 @@ constexpr double kLevelIsoMargin = 0.25;
 // Far beyond any use; keeps every product of coefficients within floats.
 constexpr double kMaxCoefficient = 1e6;
 
-bool coefficient(double x) { return x >= 0 && x <= kMaxCoefficient; }
-bool positive(double x) { return x >= 1e-6 && x <= kMaxCoefficient; }
+bool coefficient(double x) {
+  return x >= 0 && x <= kMaxCoefficient;
+}
+bool positive(double x) {
+  return x >= 1e-6 && x <= kMaxCoefficient;
+}
 
 Status check_levels(const plc_parameters& p) {
   if (p.levels < -1 || p.levels >= PLC_MAX_LEVELS) {
@@ -62,8 +66,8 @@ Status check_levels(const plc_parameters& p) {
 
 Status check_choices(const plc_parameters& p) {
   return check_ranges(
-      {{"init", static_cast<double>(p.init), p.init >= PLC_INIT_BUBBLE && p.init <= PLC_INIT_BUBBLES,
-        "a plc_init"},
+      {{"init", static_cast<double>(p.init),
+        p.init >= PLC_INIT_BUBBLE && p.init <= PLC_INIT_BUBBLES, "a plc_init"},
        {"rest length", static_cast<double>(p.rest_length),
         p.rest_length >= PLC_REST_ZERO && p.rest_length <= PLC_REST_VALUE, "a plc_rest_length"},
        {"bound", static_cast<double>(p.bound),
@@ -111,8 +115,8 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
     return {ErrorCode::kInvalidData,
             "constant image: every voxel is " + text(range.low) + ", there is no surface in it"};
   }
-  const bool within = above ? p.iso > range.low && p.iso <= range.high
-                            : p.iso >= range.low && p.iso < range.high;
+  const bool within =
+      above ? p.iso > range.low && p.iso <= range.high : p.iso >= range.low && p.iso < range.high;
   if (!within) {
     return {ErrorCode::kInvalidArgument, "iso " + text(p.iso) + ": outside the image's range " +
                                              text(range.low) + " .. " + text(range.high)};
@@ -128,9 +132,9 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
   }
   for (int h = 0; h < p.level_iso_count; ++h) {
     if (p.level_iso[h] <= p.window_low || p.level_iso[h] >= p.window_high) {
-      return {ErrorCode::kInvalidArgument,
-              "level iso-value " + text(p.level_iso[h]) + ": outside the window " +
-                  text(p.window_low) + ", " + text(p.window_high)};
+      return {ErrorCode::kInvalidArgument, "level iso-value " + text(p.level_iso[h]) +
+                                               ": outside the window " + text(p.window_low) + ", " +
+                                               text(p.window_high)};
     }
   }
   if (std::isnan(p.pad_value)) p.pad_value = above ? p.window_low : p.window_high;

@@ -91,20 +91,20 @@ PLC_API const char* plc_context_simd(const plc_context* context);
 typedef struct plc_image {
   size_t struct_size;
   plc_voxel_type type;
-  const void* voxels;   /* dims[0] * dims[1] * dims[2] values, x fastest */
-  int64_t dims[3];      /* each >= 2 */
-  double spacing[3];    /* mm between voxel centres, > 0 */
-  double origin[3];     /* LPS position of the centre of voxel (0,0,0), mm */
-  double direction[9];  /* row-major, columns are the unit axes of the image in LPS (as ITK) */
+  const void* voxels;  /* dims[0] * dims[1] * dims[2] values, x fastest */
+  int64_t dims[3];     /* each >= 2 */
+  double spacing[3];   /* mm between voxel centres, > 0 */
+  double origin[3];    /* LPS position of the centre of voxel (0,0,0), mm */
+  double direction[9]; /* row-major, columns are the unit axes of the image in LPS (as ITK) */
 } plc_image;
 
 /* Spacing 1, origin 0, identity direction, no voxels. */
 PLC_API void plc_image_defaults(plc_image* image);
 
 typedef enum plc_rest_length {
-  PLC_REST_ZERO = 0,  /* minimise the area (membrane) */
-  PLC_REST_MEAN = 1,  /* the mean edge length of the mesh at each step */
-  PLC_REST_VALUE = 2  /* rest_length_value */
+  PLC_REST_ZERO = 0, /* minimise the area (membrane) */
+  PLC_REST_MEAN = 1, /* the mean edge length of the mesh at each step */
+  PLC_REST_VALUE = 2 /* rest_length_value */
 } plc_rest_length;
 
 typedef enum plc_init {
@@ -140,8 +140,8 @@ typedef struct plc_parameters {
   plc_init init;
   int bubbles[3]; /* each 1 .. 256 */
   /* the model */
-  double curvature;  /* alpha_c (5), >= 0 */
-  double spring;     /* alpha_e (6), >= 0 */
+  double curvature; /* alpha_c (5), >= 0 */
+  double spring;    /* alpha_e (6), >= 0 */
   plc_rest_length rest_length;
   double rest_length_value; /* in units of delta, >= 0 */
   double attraction;        /* |alpha_I| (7), > 0 */
@@ -159,13 +159,13 @@ PLC_API void plc_parameters_defaults(plc_parameters* parameters);
 
 typedef struct plc_progress {
   size_t struct_size;
-  int level;         /* h of the image I_h in which the mesh evolves; counts down to 0 */
-  int levels;        /* levels above I_0 */
-  int iteration;     /* of this level, from 1 */
+  int level;     /* h of the image I_h in which the mesh evolves; counts down to 0 */
+  int levels;    /* levels above I_0 */
+  int iteration; /* of this level, from 1 */
   int64_t vertices;
-  double energy;     /* kinetic energy along the normals */
-  double fraction;   /* an estimate of what is done, 0 .. 1, never falling */
-  double seconds;    /* since the start of the call */
+  double energy;   /* kinetic energy along the normals */
+  double fraction; /* an estimate of what is done, 0 .. 1, never falling */
+  double seconds;  /* since the start of the call */
 } plc_progress;
 
 /* Called on the calling thread after every iteration. Return 0 to go on, any other to cancel. */
@@ -209,11 +209,11 @@ PLC_API plc_status plc_surface_measure(plc_context* context, const plc_surface* 
 /* How the surface came to be, level by level. */
 typedef struct plc_level_report {
   size_t struct_size;
-  int level;        /* h */
-  int64_t dims[3];  /* of I_h, padding included */
-  double unit;      /* U_h, mm */
-  double delta;     /* the invariant of (1)-(3) in mesh units (voxels of I_0 by default) */
-  double iso;       /* pi_I of this level, in the image's units */
+  int level;       /* h */
+  int64_t dims[3]; /* of I_h, padding included */
+  double unit;     /* U_h, mm */
+  double delta;    /* the invariant of (1)-(3) in mesh units (voxels of I_0 by default) */
+  double iso;      /* pi_I of this level, in the image's units */
   int64_t iterations;
   int64_t vertices; /* at the end of the level */
   int converged;    /* 0: the iteration cap ended it */
@@ -245,13 +245,13 @@ typedef struct plc_check {
   int outward;  /* each component faces outward, walls of cavities inward; -1: not defined */
   int64_t border_edges, non_manifold_edges, non_manifold_vertices, inconsistent_edges;
   int64_t wrongly_oriented_components;
-  int64_t degenerate_faces;        /* of exactly zero area, or with a repeated index */
-  int64_t duplicate_points;        /* whose coordinates equal those of an earlier point */
+  int64_t degenerate_faces; /* of exactly zero area, or with a repeated index */
+  int64_t duplicate_points; /* whose coordinates equal those of an earlier point */
   int64_t isolated_vertices;
-  int64_t self_intersections;      /* pairs of faces that meet elsewhere than in what they share */
-  int64_t first_intersection[2];   /* the first such pair; -1, -1 */
+  int64_t self_intersections;    /* pairs of faces that meet elsewhere than in what they share */
+  int64_t first_intersection[2]; /* the first such pair; -1, -1 */
   double edge_min, edge_mean, edge_max;
-  double min_angle, max_angle;     /* degrees */
+  double min_angle, max_angle; /* degrees */
   int32_t valence_min, valence_max;
 } plc_check;
 

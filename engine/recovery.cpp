@@ -46,7 +46,11 @@ class Recovery {
  public:
   Recovery(const Pyramid& pyramid, const RecoverySpec& spec, const Schedule& schedule,
            SimdTarget simd, const RecoveryProgressFn& progress, Mesh& mesh)
-      : pyramid_(pyramid), spec_(spec), schedule_(schedule), progress_(progress), mesh_(mesh),
+      : pyramid_(pyramid),
+        spec_(spec),
+        schedule_(schedule),
+        progress_(progress),
+        mesh_(mesh),
         evolution_(mesh, schedule, simd, spec.model),
         levels_(static_cast<int>(pyramid.levels.size()) - 1) {}
 
@@ -183,8 +187,9 @@ class Recovery {
                           std::max(1e-9, std::log(first_energy / spec_.epsilon));
     const double estimate = (before + own * std::clamp(fallen, 0.0, 1.0)) / all;
     fraction_ = std::max(fraction_, std::min(estimate, 1.0));
-    return {h, levels_, static_cast<int>(record.iterations), mesh_.vertex_count(), record.energy,
-            fraction_};
+    return {
+        h,        levels_, static_cast<int>(record.iterations), mesh_.vertex_count(), record.energy,
+        fraction_};
   }
 
   const Pyramid& pyramid_;

@@ -27,7 +27,7 @@ struct RecoverySpec {
   Model model;
   std::vector<double> isos;  // pi_I per level, normalised; [0] is that of I_0
   bool inside_above = true;
-  int pad_voxels = 0;        // by which the pyramid's I_0 is larger than the input on every side
+  int pad_voxels = 0;  // by which the pyramid's I_0 is larger than the input on every side
   MeshSpace space;
   Init init = Init::kBubble;
   std::array<int, 3> bubbles{1, 1, 1};
@@ -57,8 +57,8 @@ using RecoveryProgressFn = std::function<bool(const RecoveryProgress&)>;
 ImageView image_view(const Pyramid& pyramid, int level, const RecoverySpec& spec);
 
 // Evolves `mesh` from the coarsest level of the pyramid to I_0; records gets one entry per level,
-// coarse to fine. A level that holds no surface has 0 vertices in its record; the next finer one then
-// starts anew. The result is closed, oriented and free of self-intersections. Errors:
+// coarse to fine. A level that holds no surface has 0 vertices in its record; the next finer one
+// then starts anew. The result is closed, oriented and free of self-intersections. Errors:
 // kInvalidArgument (bubbles), kInvalidData (no level holds a surface), kCancelled.
 Status pyramidal_recover_shape(const Pyramid& pyramid, const RecoverySpec& spec,
                                const Schedule& schedule, SimdTarget simd,

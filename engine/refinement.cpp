@@ -77,7 +77,8 @@ FaceVertices create_face_vertices(Mesh& mesh, uint32_t old_slots) {
 }
 
 // The old edges come back where the inverted ones make the surface meet itself: the faces of before
-// did not. Each round gives back the edges of all faces that meet; with all given back none is left.
+// did not. Each round gives back the edges of all faces that meet; with all given back none is
+// left.
 void undo_where_meeting(Mesh& mesh, uint32_t old_slots, const Executor& executor) {
   for (;;) {
     const auto meeting = meeting_faces(mesh, executor);
@@ -135,7 +136,8 @@ void refine(Mesh& mesh, const Executor& executor) {
   }
   for (uint32_t v = 0; v < old_slots; ++v) {
     Neighbors ring;
-    for (uint32_t k = 0; k < mesh.valence(v); ++k) ring.push_back(faces.of_slot[faces.first[v] + k]);
+    for (uint32_t k = 0; k < mesh.valence(v); ++k)
+      ring.push_back(faces.of_slot[faces.first[v] + k]);
     mesh.set_ring(v, ring);
   }
   mesh.delta /= kRefinement;

@@ -5,10 +5,10 @@
 
 namespace plc {
 
-// A vertex at the centre of each face, then every old edge inverted, except where the inverted faces
-// would meet the surface elsewhere. Valid on any mesh of ours: its graph is simple, so no two faces
-// share two edges. delta is divided by sqrt 3, ids are renumbered along a Morton curve, every vertex
-// is due for a check.
+// A vertex at the centre of each face, then every old edge inverted, except where the inverted
+// faces would meet the surface elsewhere. Valid on any mesh of ours: its graph is simple, so no two
+// faces share two edges. delta is divided by sqrt 3, ids are renumbered along a Morton curve, every
+// vertex is due for a check.
 void refine(Mesh& mesh, const Executor& executor);
 
 // The living vertices along a Morton curve of cells of delta, ties by id.

@@ -175,8 +175,8 @@ std::vector<Candidate> Resolution::pair_candidates(const std::vector<uint32_t>& 
   return all;
 }
 
-void Resolution::apply_round(const std::vector<Candidate>& candidates,
-                             std::vector<uint32_t>& later, OperationCounts& counts) {
+void Resolution::apply_round(const std::vector<Candidate>& candidates, std::vector<uint32_t>& later,
+                             OperationCounts& counts) {
   ++round_;
   for (const Candidate& candidate : candidates) {
     if (!free_footprint(candidate)) {

@@ -60,13 +60,13 @@ class Resolution {
   uint32_t iteration_ = 0;
   uint32_t next_cut_ = 1;
 
-  Buffer<uint8_t> flags_;            // edge violations by the kernel
-  std::vector<uint32_t> edge_queue_; // vertices whose edges are to be checked
-  std::vector<uint32_t> pair_queue_; // ... whose distance to non-neighbours is to be checked
-  std::vector<uint32_t> changed_;    // where components may have become tiny
-  std::vector<uint32_t> stamp_;      // by vertex: the queue it is in
-  std::vector<uint32_t> claim_;      // by vertex: the round that claimed it
-  std::vector<uint32_t> footprint_;  // of the candidate at hand
+  Buffer<uint8_t> flags_;             // edge violations by the kernel
+  std::vector<uint32_t> edge_queue_;  // vertices whose edges are to be checked
+  std::vector<uint32_t> pair_queue_;  // ... whose distance to non-neighbours is to be checked
+  std::vector<uint32_t> changed_;     // where components may have become tiny
+  std::vector<uint32_t> stamp_;       // by vertex: the queue it is in
+  std::vector<uint32_t> claim_;       // by vertex: the round that claimed it
+  std::vector<uint32_t> footprint_;   // of the candidate at hand
   uint32_t stamp_count_ = 0;
   uint32_t round_ = 0;
 };

@@ -33,9 +33,8 @@ void Schedule::run(size_t tasks, const std::function<void(size_t)>& body) const 
     for (size_t i = 0; i < tasks; ++i) body(i);
     return;
   }
-  arena_->tbb.execute([&] {
-    oneapi::tbb::parallel_for(size_t{0}, tasks, [&](size_t i) { body(i); });
-  });
+  arena_->tbb.execute(
+      [&] { oneapi::tbb::parallel_for(size_t{0}, tasks, [&](size_t i) { body(i); }); });
 }
 
 void Schedule::run_passes(const std::vector<Pass>& passes, bool small) const {
@@ -55,8 +54,9 @@ void Schedule::run_passes(const std::vector<Pass>& passes, bool small) const {
     std::vector<std::unique_ptr<Node>> nodes;
     std::vector<bool> has_predecessor(passes.size(), false);
     for (size_t i = 0; i < passes.size(); ++i) {
-      nodes.push_back(std::make_unique<Node>(
-          graph, [&, i](const oneapi::tbb::flow::continue_msg&) { seconds[i] = timed(passes[i]); }));
+      nodes.push_back(std::make_unique<Node>(graph, [&, i](const oneapi::tbb::flow::continue_msg&) {
+        seconds[i] = timed(passes[i]);
+      }));
       for (size_t j = 0; j < i; ++j) {
         const bool conflict = (passes[j].writes & (passes[i].reads | passes[i].writes)) != 0 ||
                               (passes[j].reads & passes[i].writes) != 0;

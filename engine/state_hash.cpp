@@ -33,7 +33,8 @@ uint64_t state_hash(const Mesh& mesh) {
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     const Neighbors ring = mesh.ring(v);
     hash.add(ring.size());
-    const auto first = static_cast<uint32_t>(std::min_element(ring.begin(), ring.end()) - ring.begin());
+    const auto first =
+        static_cast<uint32_t>(std::min_element(ring.begin(), ring.end()) - ring.begin());
     for (uint32_t k = 0; k < ring.size(); ++k) hash.add(ring[(first + k) % ring.size()]);
   }
   return hash.value();

@@ -7,10 +7,10 @@ namespace plc {
 
 namespace {
 
-// Dynamic programming over the grid (i, j), 0 <= i <= d and 0 <= j <= e, from (0, 0) to (d, e), where
-// column j stands for q[(start - j) mod e]. (i, 0) and (i, e) are the same edge, as are (0, j) and
-// (d, j): a strip that visited both would use an edge twice and corrupt the mesh, so the first half
-// of each border belongs to the start and the second to the end.
+// Dynamic programming over the grid (i, j), 0 <= i <= d and 0 <= j <= e, from (0, 0) to (d, e),
+// where column j stands for q[(start - j) mod e]. (i, 0) and (i, e) are the same edge, as are (0,
+// j) and (d, j): a strip that visited both would use an edge twice and corrupt the mesh, so the
+// first half of each border belongs to the start and the second to the end.
 class StripSearch {
  public:
   StripSearch(const std::vector<Vec3>& p, const std::vector<Vec3>& q)

@@ -8,8 +8,8 @@ namespace plc {
 
 namespace {
 
-// Away from the object: 1 would clip half of the voxels that decide where the surface lies. Far more
-// would let a bright neighbourhood beside a dark distance (soft tissue, air) fade the object.
+// Away from the object: 1 would clip half of the voxels that decide where the surface lies. Far
+// more would let a bright neighbourhood beside a dark distance (soft tissue, air) fade the object.
 constexpr double kReachOut = 2.0;
 // Into the object. At 2 the attraction on a head CT is so strong against the curvature force that
 // structures below the voxel size open and close for ever; at 5 it converges.
@@ -21,7 +21,10 @@ class BoundaryHistogram {
  public:
   BoundaryHistogram(const VolumeView& volume, const VoxelRange& range, double iso, bool above,
                     const Executor& executor)
-      : volume_(volume), range_(range), iso_(iso), above_(above),
+      : volume_(volume),
+        range_(range),
+        iso_(iso),
+        above_(above),
         slices_(static_cast<size_t>(volume.dims[2])) {
     executor.run(slices_.size(), [&](size_t z) { scan(z); });
     for (auto& side : bins_) side.assign(kBins, 0);
@@ -56,11 +59,16 @@ class BoundaryHistogram {
 
   void scan(size_t z) {
     switch (volume_.type) {
-      case VoxelType::kU8: return scan(static_cast<const uint8_t*>(volume_.voxels), z);
-      case VoxelType::kI16: return scan(static_cast<const int16_t*>(volume_.voxels), z);
-      case VoxelType::kU16: return scan(static_cast<const uint16_t*>(volume_.voxels), z);
-      case VoxelType::kI32: return scan(static_cast<const int32_t*>(volume_.voxels), z);
-      case VoxelType::kF32: return scan(static_cast<const float*>(volume_.voxels), z);
+      case VoxelType::kU8:
+        return scan(static_cast<const uint8_t*>(volume_.voxels), z);
+      case VoxelType::kI16:
+        return scan(static_cast<const int16_t*>(volume_.voxels), z);
+      case VoxelType::kU16:
+        return scan(static_cast<const uint16_t*>(volume_.voxels), z);
+      case VoxelType::kI32:
+        return scan(static_cast<const int32_t*>(volume_.voxels), z);
+      case VoxelType::kF32:
+        return scan(static_cast<const float*>(volume_.voxels), z);
     }
   }
 

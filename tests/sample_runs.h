@@ -94,6 +94,16 @@ inline void choose_bubbles(Run& run, Random& random) {
   r.init = plc::Init::kBubbles;
 }
 
+// A dark object in a bright image instead.
+inline void turn_dark(Run& run) {
+  for (float& value : run.volume.values) value = 1 - value;
+  run.iso = 1 - run.iso;
+  for (double& iso : run.recovery.isos) iso = 1 - iso;
+  run.pyramid.pad_value = 1;
+  run.recovery.inside_above = false;
+  run.recovery.model.attraction *= -1;
+}
+
 inline Run random_run(uint64_t seed) {
   Random random(seed);
   std::string kind;
@@ -109,7 +119,7 @@ inline Run random_run(uint64_t seed) {
   // Thin parts fade on coarse levels.
   for (size_t h = 1; h < r.isos.size(); ++h) r.isos[h] = r.isos[h - 1] * 0.65;
   r.model = random_model(random);
-  r.inside_above = true;
+  if (random.integer(0, 4) == 0) turn_dark(run);
   const bool physical = random.integer(0, 2) == 0;
   const auto& spacing = run.volume.spacing;
   const double finest = std::min({spacing[0], spacing[1], spacing[2]});

@@ -29,6 +29,51 @@ inline void fill_mesh(plc::Mesh& mesh, const Soup& soup, double delta) {
   mesh.delta = delta;
 }
 
+inline Soup tetrahedron() {
+  Soup m;
+  m.xyz = {1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1};
+  m.abc = {0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
+  return m;
+}
+
+// Around the z axis: vertices 0 .. n-1 of a ring of radius 1, then the apexes at -height, height.
+inline Soup bipyramid(uint32_t n, double height) {
+  constexpr double kPi = 3.14159265358979323846;
+  Soup m;
+  for (uint32_t i = 0; i < n; ++i)
+    m.vertex(std::cos(2 * kPi * i / n), std::sin(2 * kPi * i / n), 0);
+  const uint32_t bottom = m.vertex(0, 0, -height), top = m.vertex(0, 0, height);
+  for (uint32_t i = 0; i < n; ++i) {
+    m.face(top, i, (i + 1) % n);
+    m.face(bottom, (i + 1) % n, i);
+  }
+  return m;
+}
+
+// A tube along z with `rings` cross-sections of n corners and of the given radius, 1 apart, closed
+// by apexes; corner i of ring r is vertex r n + i, ring by ring turned by half a side.
+inline Soup tube(uint32_t n, uint32_t rings, double radius) {
+  constexpr double kPi = 3.14159265358979323846;
+  Soup m;
+  for (uint32_t r = 0; r < rings; ++r) {
+    for (uint32_t i = 0; i < n; ++i) {
+      const double angle = 2 * kPi * (i + 0.5 * r) / n;
+      m.vertex(radius * std::cos(angle), radius * std::sin(angle), r);
+    }
+  }
+  const uint32_t bottom = m.vertex(0, 0, -1), top = m.vertex(0, 0, rings);
+  for (uint32_t i = 0; i < n; ++i) {
+    const uint32_t j = (i + 1) % n;
+    m.face(bottom, j, i);
+    m.face(top, (rings - 1) * n + i, (rings - 1) * n + j);
+    for (uint32_t r = 0; r + 1 < rings; ++r) {
+      m.face(r * n + i, r * n + j, (r + 1) * n + i);
+      m.face(r * n + j, (r + 1) * n + j, (r + 1) * n + i);
+    }
+  }
+  return m;
+}
+
 // V - E + F of a closed triangulated surface: 2 E = 3 F = the sum of the valences.
 inline int64_t euler(const plc::Mesh& mesh) {
   int64_t ends = 0;
@@ -55,6 +100,17 @@ inline int64_t component_count(const plc::Mesh& mesh) {
     }
   }
   return count;
+}
+
+using FaceIds = std::array<uint32_t, 3>;
+
+// Sorted, each from its smallest corner.
+inline std::vector<FaceIds> sorted_faces(const plc::Mesh& mesh) {
+  const std::vector<uint32_t> abc = mesh.faces();
+  std::vector<FaceIds> faces;
+  for (size_t i = 0; i < abc.size(); i += 3) faces.push_back({abc[i], abc[i + 1], abc[i + 2]});
+  std::sort(faces.begin(), faces.end());
+  return faces;
 }
 
 inline double volume(const plc::Mesh& mesh) {

@@ -41,7 +41,7 @@ LoadedVolume sierpinski_phantom(const PhantomOptions& options);
 LoadedVolume shell_phantom(const PhantomOptions& options);
 
 // Random trees of tapering bright tubes (0.8, full width at half height is the tube) on a darker
-// background (0.2); 256 x 256 x 124 (i16), noise 0.04, one tree, depth 7.
+// background (0.2); 256 x 256 x 124 (i16), noise 0.04, four trees, depth 7.
 LoadedVolume vessels_phantom(const PhantomOptions& options);
 
 // Random metaballs: the sum of (1 - d^2 / R^2)^2 within the balls of radii R, at most 1; 64^3

@@ -12,13 +12,14 @@ namespace {
 constexpr double kBackground = 0.2;
 constexpr double kTube = 0.8;
 constexpr double kNoise = 0.04;
+constexpr int kTrees = 4;
 constexpr int kDepth = 7;  // of branching: up to 2^7 twigs a tree
 // In units of the smallest extent: a trunk of 3.7 mm, twigs of 0.8 mm in 124 mm.
 constexpr double kTrunkRadius = 0.03;
-constexpr double kTrunkLength = 0.3;
-constexpr double kBend = 0.35;         // of the direction, per step
-constexpr double kFork = 0.8;          // of the direction, at a branching
-constexpr double kLengthRatio = 0.82;  // of a branch to its parent
+constexpr double kTrunkLength = 0.35;
+constexpr double kBend = 0.2;          // of the direction, per step
+constexpr double kFork = 0.7;          // of the direction, at a branching
+constexpr double kLengthRatio = 0.88;  // of a branch to its parent
 constexpr int kSteps = 10;             // of a branch
 
 Point sum(const Point& a, const Point& b, double factor) {
@@ -141,7 +142,7 @@ std::pair<Branch, Branch> grow(const Canvas& canvas, const Branch& branch, Rando
 
 LoadedVolume vessels_phantom(const PhantomOptions& options) {
   const Canvas canvas("vessels", options, {{256, 256, 124}, PLC_I16, kNoise});
-  const int trees = checked_count("vessels", "number of trees", options.count, 1, 10000);
+  const int trees = checked_count("vessels", "number of trees", options.count, kTrees, 10000);
   const int depth = checked_count("vessels", "depth", options.depth, kDepth, 12);
   std::vector<double> field = canvas.field(kBackground);
   Painter painter(canvas, field);
@@ -149,8 +150,8 @@ LoadedVolume vessels_phantom(const PhantomOptions& options) {
   const double extent = canvas.smallest_extent();
   for (int tree = 0; tree < trees; ++tree) {
     Branch root{};
-    root.start = {canvas.extent(0) * random.uniform(0.35, 0.65),
-                  canvas.extent(1) * random.uniform(0.35, 0.65), kTrunkRadius * extent + 2};
+    root.start = {canvas.extent(0) * random.uniform(0.1, 0.9),
+                  canvas.extent(1) * random.uniform(0.1, 0.9), kTrunkRadius * extent + 2};
     root.direction = unit(sum({0, 0, 1}, random_direction(random), 0.3));
     root.radius = kTrunkRadius * extent;
     root.length = kTrunkLength * extent;
