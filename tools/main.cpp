@@ -1,6 +1,7 @@
 // The `pellicle` command. Exit codes: 0 done, 1 a mesh or result is not valid, 2 bad usage or
 // input, 130 interrupted. Every error is one line on stderr.
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -52,6 +53,10 @@ class Command {
     } catch (const CLI::Success& e) {
       return app_.exit(e);  // --help, --version
     } catch (const CLI::ParseError& e) {
+      const auto unknown = app_.remaining();
+      if (app_.get_subcommands().empty() && !unknown.empty()) {
+        return fail(unknown[0] + ": unknown command; extract, check, phantom or render");
+      }
       return fail(e.what());
     }
     if (extract_->parsed()) return run_extract(extract_options_);
@@ -80,6 +85,7 @@ class Command {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file too large for its limit fails as a full disk does
   try {
     return Command().run(argc, argv);
   } catch (const Failure& failure) {

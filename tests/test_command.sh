@@ -1,0 +1,236 @@
+#!/usr/bin/env bash
+# The command from outside: what it writes, and that every bad input gets one clear line on stderr,
+# exit code 2 and no file.   tests/test_command.sh PELLICLE
+set -uo pipefail
+pellicle=$(realpath "$1")
+here=$(mktemp -d)
+trap 'rm -rf "$here"' EXIT
+cd "$here" || exit 1
+mkdir out
+failures=0
+
+fails() {
+  echo "FAILED: $1"
+  sed 's/^/    /' stderr
+  failures=$((failures + 1))
+}
+
+# What is left in out/ is removed, so that every case starts with an empty folder.
+left_over() {
+  local left
+  left=$(find out -mindepth 1)
+  find out -mindepth 1 -delete
+  echo "$left"
+}
+
+# refused WHAT WORD COMMAND...: exit code 2, one line on stderr that has WORD in it, nothing written.
+refused() {
+  local what=$1 word=$2 code=0 left
+  shift 2
+  "$@" >stdout 2>stderr </dev/null || code=$?
+  left=$(left_over)
+  if [ $code -ne 2 ]; then fails "$what: exit code $code, not 2"
+  elif [ "$(wc -l <stderr)" -ne 1 ]; then fails "$what: not one line on stderr"
+  elif ! grep -qi -- "$word" stderr; then fails "$what: the line does not say \"$word\""
+  elif [ -s stdout ]; then fails "$what: writes to stdout"
+  elif [ -n "$left" ]; then fails "$what: leaves $left"
+  fi
+}
+
+# works WHAT CODE COMMAND...: that exit code.
+works() {
+  local what=$1 expected=$2 code=0
+  shift 2
+  "$@" >stdout 2>stderr </dev/null || code=$?
+  if [ $code -ne "$expected" ]; then fails "$what: exit code $code, not $expected"; fi
+}
+
+says() {  # WHAT PATTERN FILE
+  grep -qE -- "$2" "$3" || fails "$1: no \"$2\" in $3"
+}
+
+extract() { refused "$1" "$2" "$pellicle" extract "${@:3}" -o out/mesh.ply; }
+
+# The line names the option, as it is given or as the words of which it is made.
+option() {
+  local words=${1#--}
+  extract "$*" "${words//-/.}" ball.nrrd --iso 0.5 "$@"
+}
+
+nrrd() {  # type, sizes, more header lines; the voxels come from stdin
+  printf 'NRRD0004\ntype: %s\ndimension: %d\nsizes: %s\nendian: little\nencoding: %s\n\n' \
+    "$1" "$(wc -w <<<"$2")" "$2" "${3:-raw}"
+  cat
+}
+
+metaimage() {  # DimSize, channels
+  printf 'ObjectType = Image\nNDims = 3\nDimSize = %s\nElementNumberOfChannels = %s\n' "$1" "$2"
+  printf 'ElementType = MET_UCHAR\nElementDataFile = LOCAL\n'
+  cat
+}
+
+inv3() {  # name, bytes of the matrix of 2 x 8 x 8
+  mkdir -p project
+  printf '%s' '<?xml version="1.0"?><plist version="1.0"><dict><key>matrix</key><dict>' \
+    '<key>dtype</key><string>int16</string><key>filename</key><string>matrix.dat</string>' \
+    '<key>shape</key><array><integer>2</integer><integer>8</integer><integer>8</integer></array>' \
+    '</dict><key>orientation</key><integer>1</integer><key>spacing</key><array><real>1</real>' \
+    '<real>1</real><real>2</real></array></dict></plist>' >project/main.plist
+  head -c "$2" /dev/zero >project/matrix.dat
+  tar cf "$1" project
+}
+
+zeros() { head -c "$1" /dev/zero; }
+
+works "phantom" 0 "$pellicle" phantom blobs --size 24 --seed 7 -o ball.nrrd
+works "phantom" 0 "$pellicle" phantom blobs --size 24 --seed 7 -o ball.mha
+
+# ---- inputs that cannot be used
+zeros 0 >empty.nrrd
+echo "no image" >words.txt
+echo "no image" >words.nrrd
+head -c 2000 ball.nrrd >cut.nrrd
+head -c 2000 ball.mha >cut.mha
+head -c 30 ball.mha >cut_header.mha
+zeros 64 | nrrd uint8 "8 8" >flat.nrrd
+zeros 64 | nrrd uint8 "8 8 1" >slice.nrrd
+zeros 64 | nrrd uint8 "8 0 8" >none.nrrd
+zeros 1000 | nrrd uint8 "1000 1000 1000" >lying.nrrd
+zeros 1000 | gzip -n | nrrd uint8 "100000 100000 10000" gzip >giant.nrrd
+zeros 512 | nrrd uint8 "8 8 8" >constant.nrrd
+zeros 1536 | metaimage "8 8 8" 3 >vectors.mha
+{ zeros 2044; printf '\x00\x00\xc0\x7f'; } | nrrd float "8 8 8" >nan.nrrd
+{ zeros 2044; printf '\x00\x00\x80\x7f'; } | nrrd float "8 8 8" >infinite.nrrd
+inv3 short.inv3 200
+inv3 cut_tar.inv3 256
+head -c 1500 cut_tar.inv3 >cut.inv3
+tar cf nothing.inv3 words.txt
+mkdir no_images no_dicom
+cp words.txt no_dicom/slice.dcm
+
+extract "missing file" "missing.nrrd" missing.nrrd --iso 0.5
+for file in empty.nrrd words.txt words.nrrd cut.nrrd cut.mha cut_header.mha flat.nrrd slice.nrrd \
+  none.nrrd lying.nrrd vectors.mha short.inv3 cut.inv3 nothing.inv3 no_images no_dicom; do
+  extract "$file" "$file" $file --iso 0.5
+done
+extract "more memory than there is" "memory" giant.nrrd --iso 0.5
+extract "constant image" "constant\|same value\|range" constant.nrrd --iso 0.5
+extract "NaN voxels" "nan\|finite" nan.nrrd --iso 0.5
+extract "infinite voxels" "inf\|finite" infinite.nrrd --iso 0.5
+extract "iso above the range" "iso" ball.nrrd --iso 7
+extract "iso below the range" "iso" ball.nrrd --iso -7
+
+# ---- options
+option --levels -3
+option --levels 31
+option --levels 2.5
+option --reduction 1
+option --reduction 2.5
+option --level-iso 0.5,0.5 --levels 3
+option --level-iso 0.5,x
+extract "no bubbles" "bubbles" ball.nrrd --iso 0.5 --init bubbles=0,1,1
+extract "bubbles in 2-D" "bubbles" ball.nrrd --iso 0.5 --init bubbles=3,3
+option --init balloon
+option --mass -1
+option --mass 0
+option --damping -1
+option --time-step 0
+option --time-step nan
+option --max-move 0
+option --max-move 2
+option --bound wall
+option --epsilon 0
+option --max-iterations 0
+option --curvature -1
+option --curvature inf
+option --spring -1
+option --rest-length -1
+option --rest-length long
+option --attraction 0
+option --window 1,0
+option --window 1
+option --pad nan
+option --inside left
+option --anisotropy none
+option --space mni
+option --threads 0
+option --threads 1000000
+option --simd mmx
+option --colour blue
+extract "report in no folder" "missing/report.json" ball.nrrd --iso 0.5 --report missing/report.json
+extract "report that is the mesh" "both" ball.nrrd --iso 0.5 --report out/mesh.ply
+extract "no iso" "iso" ball.nrrd
+extract "iso that is no number" "iso" ball.nrrd --iso bone
+extract "iso that is not finite" "iso" ball.nrrd --iso nan
+
+# ---- outputs
+for output in out/mesh.xyz out/mesh missing/mesh.ply out; do
+  refused "output $output" "$output" "$pellicle" extract ball.nrrd --iso 0.5 -o $output
+done
+mkdir folder.ply
+refused "a folder as output" "folder.ply" "$pellicle" extract ball.nrrd --iso 0.5 -o folder.ply
+# A file may have 4 KiB: what is written meets the end of the room.
+(ulimit -f 4; refused "no room" "mesh.ply" "$pellicle" extract ball.nrrd --iso 0.5 --quiet \
+  -o out/mesh.ply; exit "$failures")
+failures=$?
+
+# ---- the other commands
+works "surface" 0 "$pellicle" extract ball.nrrd --iso 0.5 --quiet -o surface.ply
+head -c 1000 surface.ply >cut.ply
+cp words.txt words.stl
+refused "no command" "subcommand" "$pellicle"
+refused "unknown command" "carve" "$pellicle" carve
+refused "check of a missing mesh" "missing.ply" "$pellicle" check missing.ply
+for file in cut.ply words.stl words.txt; do
+  refused "check of $file" "$file" "$pellicle" check $file
+  refused "render of $file" "$file" "$pellicle" render $file -o out/picture.png
+done
+refused "picture of no known kind" "png" "$pellicle" render surface.ply -o out/picture.jpg
+refused "picture of no size" "size" "$pellicle" render surface.ply --size 0 -o out/picture.png
+refused "picture in no folder" "missing" "$pellicle" render surface.ply -o missing/picture.png
+refused "unknown phantom" "cube" "$pellicle" phantom cube -o out/volume.nrrd
+refused "phantom of no size" "no voxels" "$pellicle" phantom chain --size 0 -o out/volume.nrrd
+refused "phantom of no known kind" "volume.png" "$pellicle" phantom chain -o out/volume.png
+refused "phantom with negative noise" "noise" "$pellicle" phantom shell --noise -1 -o out/v.nrrd
+
+# ---- what works
+works "--version" 0 "$pellicle" --version
+works "--help" 0 "$pellicle" extract --help
+for name in iso level-iso inside levels reduction init curvature spring rest-length attraction mass \
+  damping time-step max-move bound epsilon max-iterations window pad threads simd report quiet; do
+  says "help of extract" "--$name" stdout
+done
+for suffix in stl ply obj off vtp PLY; do
+  works "extract to .$suffix" 0 "$pellicle" extract ball.mha --iso 0.5 -o "out/mesh.$suffix"
+  works "check of .$suffix" 0 "$pellicle" check "out/mesh.$suffix"
+  says "check of .$suffix" "^valid +yes" stdout
+done
+works "same surface" 0 "$pellicle" extract ball.nrrd --iso 0.5 --threads 3 --quiet -o out/again.ply
+if [ -s stdout ] || [ -s stderr ]; then fails "--quiet: not quiet"; fi
+cmp -s out/again.ply out/mesh.ply || fails "the surface depends on threads or container"
+for space in lps ras voxel; do
+  works "--space $space" 0 "$pellicle" extract ball.nrrd --iso 0.5 --space $space -o out/s.ply
+  works "check in $space" 0 "$pellicle" check out/s.ply
+done
+works "--report" 0 "$pellicle" extract ball.nrrd --iso 0.5 -o out/r.ply --report out/r.json
+for key in pellicle input dims spacing range parameters levels level unit delta iterations vertices \
+  converged energy seconds topology normals dynamics total operations creation inversion deletion \
+  annular axial tetrahedron refinement surface faces components euler genus area volume read \
+  pyramid evolution write peak_rss_bytes threads simd; do
+  says "report" "\"$key\":" out/r.json
+done
+says "report" '"hash": "[0-9a-f]{16}"' out/r.json
+works "render" 0 "$pellicle" render surface.ply --size 64 -o out/picture.png
+printf 'OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n' >open.off
+works "an open mesh" 1 "$pellicle" check open.off
+left_over >/dev/null
+
+# ---- Ctrl-C
+works "phantom" 0 "$pellicle" phantom sierpinski -o sponge.nrrd
+works "interrupted" 130 timeout --preserve-status -s INT 3 \
+  "$pellicle" extract sponge.nrrd --iso 100 --levels 0 -o out/sponge.ply --report out/sponge.json
+left=$(left_over)
+if [ -n "$left" ]; then fails "interrupted: leaves $left"; fi
+
+if [ $failures -gt 0 ]; then echo "$failures failures"; exit 1; fi
+echo "All as expected."
