@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+#include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -50,24 +51,39 @@ void require_ratio(const std::string& path, uint64_t packed, uint64_t needed) {
 struct NiftiLayout {
   uint64_t offset = 0;  // of the voxels
   uint64_t voxel_bytes = 0;
+  bool is_float = false;
+  bool big_endian = false;
 };
 
 NiftiLayout nifti_layout(const std::string& path, const std::array<char, 544>& bytes) {
   constexpr int32_t kSize1 = 348;
   constexpr int32_t kSize2 = 540;
+  constexpr int16_t kFloat32 = 16;
+  constexpr int16_t kFloat64 = 64;
   const char* at = bytes.data();
   for (const bool big : {false, true}) {
     const auto size = load_value<int32_t>(at, big);
-    if (size == kSize1) {
-      return {static_cast<uint64_t>(std::max(0.0F, load_value<float>(at + 108, big))),
-              load_value<uint16_t>(at + 72, big) / 8U};
-    }
-    if (size == kSize2) {
-      return {static_cast<uint64_t>(std::max<int64_t>(0, load_value<int64_t>(at + 168, big))),
-              load_value<uint16_t>(at + 14, big) / 8U};
-    }
+    if (size != kSize1 && size != kSize2) continue;
+    const char* type_at = at + (size == kSize1 ? 70 : 12);  // bitpix follows
+    const double offset = size == kSize1 ? static_cast<double>(load_value<float>(at + 108, big))
+                                         : static_cast<double>(load_value<int64_t>(at + 168, big));
+    const auto type = load_value<int16_t>(type_at, big);
+    if (!(offset >= 0 && offset < 1e15)) break;
+    return {static_cast<uint64_t>(offset), load_value<uint16_t>(type_at + 2, big) / 8U,
+            type == kFloat32 || type == kFloat64, big};
   }
   throw Failure{path + ": is not a readable NIfTI file"};
+}
+
+// NIfTI's library replaces NaN and infinity by 0 and says nothing. The bytes are whole voxels.
+void require_finite(const std::string& path, const NiftiLayout& layout, const char* bytes,
+                    size_t size) {
+  for (size_t at = 0; at + layout.voxel_bytes <= size; at += layout.voxel_bytes) {
+    const double value = layout.voxel_bytes == sizeof(float)
+                             ? static_cast<double>(load_value<float>(bytes + at, layout.big_endian))
+                             : load_value<double>(bytes + at, layout.big_endian);
+    if (!std::isfinite(value)) throw Failure{path + ": has voxels that are NaN or infinite"};
+  }
 }
 
 // gzread() passes files through that are not compressed.
@@ -80,27 +96,36 @@ void check_nifti(const std::string& path, const ItkHeader& header) {
   }
   const NiftiLayout layout = nifti_layout(path, first);
   const uint64_t needed = voxels_of(header) * layout.voxel_bytes;
+  const uint64_t size = size_of(path);
   if (gzdirect(file.get()) != 0) {
-    const uint64_t size = size_of(path);
     require_bytes(path, size - std::min(size, layout.offset), needed);
-    return;
+    if (!layout.is_float) return;
+  } else {
+    require_ratio(path, size, needed);
   }
-  require_ratio(path, size_of(path), needed);
-  gzrewind(file.get());
+  if (gzseek(file.get(), static_cast<z_off_t>(layout.offset), SEEK_SET) < 0) {
+    too_short(path, 0, needed);
+  }
   std::vector<char> buffer(size_t{1} << 18);
   uint64_t unpacked = 0;
-  for (;;) {
-    const int got = gzread(file.get(), buffer.data(), static_cast<unsigned>(buffer.size()));
+  while (unpacked < needed) {
+    const auto wanted = std::min<uint64_t>(buffer.size(), needed - unpacked);
+    const int got = gzread(file.get(), buffer.data(), static_cast<unsigned>(wanted));
     if (got < 0) throw Failure{path + ": is truncated or damaged (its gzip stream is not whole)"};
+    if (got == 0) too_short(path, unpacked, needed);
     unpacked += static_cast<uint64_t>(got);
-    if (static_cast<size_t>(got) < buffer.size()) break;
+    if (layout.is_float) require_finite(path, layout, buffer.data(), static_cast<size_t>(got));
   }
+  // On to the end, where the checksum is.
+  int got = 0;
+  do {
+    got = gzread(file.get(), buffer.data(), static_cast<unsigned>(buffer.size()));
+  } while (got > 0);
   int error = Z_OK;
   gzerror(file.get(), &error);
-  if (error != Z_OK) {
+  if (got < 0 || error != Z_OK) {
     throw Failure{path + ": is truncated or damaged (its gzip stream is not whole)"};
   }
-  require_bytes(path, unpacked - std::min(unpacked, layout.offset), needed);
 }
 
 // Unpacks the rest of the file without keeping it.
