@@ -15,19 +15,17 @@ struct Affine {
 
 Affine affine_of(const plc_surface& surface, plc_space space) {
   Affine a{};
-  for (int j = 0; j < 3; ++j) {
-    const auto axis = static_cast<size_t>(j);
+  for (size_t axis = 0; axis < 3; ++axis) {
     const double voxels = 1 / surface.space.step[axis];
     if (space == PLC_SPACE_VOXEL) {
-      a.m[4 * j] = voxels;
+      a.m[4 * axis] = voxels;
       continue;
     }
-    for (int i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < 3; ++i) {
       // RAS is LPS with x and y turned round.
       const double sign = space == PLC_SPACE_RAS && i < 2 ? -1 : 1;
-      a.m[3 * i + j] =
-          sign * surface.direction[static_cast<size_t>(3 * i + j)] * surface.spacing[axis] * voxels;
-      a.t[i] = sign * surface.origin[static_cast<size_t>(i)];
+      a.m[3 * i + axis] = sign * surface.direction[3 * i + axis] * surface.spacing[axis] * voxels;
+      a.t[i] = sign * surface.origin[i];
     }
   }
   return a;

@@ -40,7 +40,9 @@ void make_sphere(Mesh& mesh, double edge, const Executor& executor) {
   mesh.clear();
   add_icosahedron(mesh);
   mesh.delta = kIcosahedronEdge / 1.5;
-  for (double mean = kIcosahedronEdge; mean > edge; mean /= kRefinement) {
+  double mean = kIcosahedronEdge;
+  while (mean > edge) {
+    mean /= kRefinement;
     refine(mesh, executor);
     for (uint32_t v = 0; v < mesh.slots(); ++v) {
       mesh.place(v, mesh.at(v) * (1.0F / length(mesh.at(v))));

@@ -1,5 +1,6 @@
 // The triangulated mesh (3.1): structure-of-arrays vertex streams and oriented neighbour rings.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -109,7 +110,7 @@ class Mesh {
   Buffer<uint32_t> columns_;
   Buffer<uint16_t> valence_;
   Buffer<uint32_t> tail_;
-  std::vector<uint32_t> free_tails_[16];  // by size class
+  std::array<std::vector<uint32_t>, 16> free_tails_;  // by size class
   std::vector<uint32_t> free_;
   RingView view_;
 };

@@ -7,10 +7,12 @@ namespace plc {
 
 namespace {
 
-// Dynamic programming over the grid (i, j), 0 <= i <= d and 0 <= j <= e, from (0, 0) to (d, e),
-// where column j stands for q[(start - j) mod e]. (i, 0) and (i, e) are the same edge, as are (0,
-// j) and (d, j): a strip that visited both would use an edge twice and corrupt the mesh, so the
-// first half of each border belongs to the start and the second to the end.
+// Dynamic programming over the grid (i, j), 0 <= i < d and 0 <= j <= e, where column j stands for
+// q[(start - j) mod e]. Every strip comes to p[0] once, at q[start], and so is one path from (0, 0)
+// to (d - 1, e), from where it closes. The only edges that two places of the grid share are (i, 0)
+// and (i, e): a path visits both when it turns to j at i and stays there to the end, which would use
+// the edge twice and corrupt the mesh. So there are two layers: `turning` has gone along j = 0 and,
+// perhaps, from there along j; `turned` has grown i again since and alone may reach j = e.
 class StripSearch {
  public:
   StripSearch(const std::vector<Vec3>& p, const std::vector<Vec3>& q)
@@ -19,33 +21,43 @@ class StripSearch {
     for (uint32_t i = 0; i < d_; ++i) {
       for (uint32_t j = 0; j < e_; ++j) rung_[i * e_ + j] = length(p[i] - q[j]);
     }
-    cost_.resize((d_ + 1) * (e_ + 1));
+    turning_.resize(static_cast<size_t>(d_) * (e_ + 1));
+    turned_.resize(turning_.size());
   }
 
-  // Length of the best strip from p[0]-q[start]; infinite where the borders forbid all.
+  // Length of the shortest strip that comes to p[0] at q[start].
   float solve(uint32_t start) {
-    for (uint32_t i = 0; i <= d_; ++i) {
+    for (uint32_t i = 0; i < d_; ++i) {
       for (uint32_t j = 0; j <= e_; ++j) {
-        float best = i == 0 && j == 0 ? 0.0F : kNone;
-        if (i > 0) best = std::min(best, at(i - 1, j));
-        if (j > 0) best = std::min(best, at(i, j - 1));
-        at(i, j) = allowed(i, j) ? best + rung(start, i, j) : kNone;
+        const float rung = rung_[i * e_ + column(start, j)];
+        const size_t here = at(i, j);
+        if (j == 0) {
+          turning_[here] = (i == 0 ? 0 : turning_[at(i - 1, 0)]) + rung;
+        } else {
+          turning_[here] = j == e_ ? kNone : turning_[here - 1] + rung;
+        }
+        turned_[here] = i == 0 || j == 0 ? kNone : best_before(i, j).length + rung;
       }
     }
-    return at(d_, e_);
+    return turned_[at(d_ - 1, e_)];
   }
 
-  // The rungs of the strip that solve(start) found, without the repeated last one.
+  // The rungs of the strip that solve(start) found.
   std::vector<Rung> trace(uint32_t start) const {
     std::vector<Rung> rungs;
-    for (uint32_t i = d_, j = e_; i != 0 || j != 0;) {
-      if (j == 0 || (i > 0 && at(i - 1, j) <= at(i, j - 1))) {
-        --i;
-      } else {
-        --j;
-      }
-      rungs.push_back({i % d_, column(start, j)});
+    uint32_t i = d_ - 1;
+    uint32_t j = e_;
+    for (bool turned = true; turned;) {
+      rungs.push_back({i, column(start, j)});
+      const Before before = best_before(i, j);
+      (before.along_i ? i : j) -= 1;
+      turned = before.turned;
     }
+    for (;; --j) {
+      rungs.push_back({i, column(start, j)});
+      if (j == 0) break;
+    }
+    while (i-- > 0) rungs.push_back({i, column(start, 0)});
     std::reverse(rungs.begin(), rungs.end());
     return rungs;
   }
@@ -53,27 +65,30 @@ class StripSearch {
  private:
   static constexpr float kNone = std::numeric_limits<float>::infinity();
 
-  float& at(uint32_t i, uint32_t j) { return cost_[i * (e_ + 1) + j]; }
-  float at(uint32_t i, uint32_t j) const { return cost_[i * (e_ + 1) + j]; }
-  uint32_t column(uint32_t start, uint32_t j) const { return (start + 2 * e_ - j) % e_; }
-  float rung(uint32_t start, uint32_t i, uint32_t j) const {
-    return rung_[i % d_ * e_ + column(start, j)];
+  // How a path came to a turned place.
+  struct Before {
+    float length;
+    bool along_i, turned;
+  };
+  Before best_before(uint32_t i, uint32_t j) const {
+    Before best{turned_[at(i - 1, j)], true, true};
+    if (turning_[at(i - 1, j)] < best.length) best = {turning_[at(i - 1, j)], true, false};
+    if (turned_[at(i, j - 1)] < best.length) best = {turned_[at(i, j - 1)], false, true};
+    return best;
   }
-  bool allowed(uint32_t i, uint32_t j) const {
-    if (j == 0 && i > d_ / 2) return false;
-    if (j == e_ && i <= d_ / 2) return false;
-    if (i == 0 && j > e_ / 2) return false;
-    return i != d_ || j > e_ / 2;
-  }
+
+  size_t at(uint32_t i, uint32_t j) const { return static_cast<size_t>(i) * (e_ + 1) + j; }
+  uint32_t column(uint32_t start, uint32_t j) const { return (start + e_ - j) % e_; }
 
   uint32_t d_, e_;
   std::vector<float> rung_;
-  std::vector<float> cost_;
+  std::vector<float> turning_, turned_;
 };
 
 }  // namespace
 
 std::vector<Rung> shortest_strip(const std::vector<Vec3>& p, const std::vector<Vec3>& q) {
+  if (p.empty() || q.empty()) return {};
   StripSearch search(p, q);
   uint32_t best_start = 0;
   float best = std::numeric_limits<float>::infinity();
