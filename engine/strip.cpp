@@ -10,9 +10,9 @@ namespace {
 // Dynamic programming over the grid (i, j), 0 <= i < d and 0 <= j <= e, where column j stands for
 // q[(start - j) mod e]. Every strip comes to p[0] once, at q[start], and so is one path from (0, 0)
 // to (d - 1, e), from where it closes. The only edges that two places of the grid share are (i, 0)
-// and (i, e): a path visits both when it turns to j at i and stays there to the end, which would use
-// the edge twice and corrupt the mesh. So there are two layers: `turning` has gone along j = 0 and,
-// perhaps, from there along j; `turned` has grown i again since and alone may reach j = e.
+// and (i, e): a path visits both when it turns to j at i and stays there to the end, which would
+// use the edge twice and corrupt the mesh. So there are two layers: `turning` has gone along j = 0
+// and, perhaps, from there along j; `turned` has grown i again since and alone may reach j = e.
 class StripSearch {
  public:
   StripSearch(const std::vector<Vec3>& p, const std::vector<Vec3>& q)
@@ -78,6 +78,7 @@ class StripSearch {
   }
 
   size_t at(uint32_t i, uint32_t j) const { return static_cast<size_t>(i) * (e_ + 1) + j; }
+  uint32_t row(uint32_t i) const { return i == d_ ? 0 : i; }
   uint32_t column(uint32_t start, uint32_t j) const { return (start + e_ - j) % e_; }
 
   uint32_t d_, e_;
