@@ -79,7 +79,10 @@ class StripSearch {
 
   size_t at(uint32_t i, uint32_t j) const { return static_cast<size_t>(i) * (e_ + 1) + j; }
   uint32_t row(uint32_t i) const { return i == d_ ? 0 : i; }
-  uint32_t column(uint32_t start, uint32_t j) const { return (start + e_ - j) % e_; }
+  uint32_t column(uint32_t start, uint32_t j) const {
+    const uint32_t k = start + e_ - j;
+    return k < e_ ? k : k - e_;
+  }
 
   uint32_t d_, e_;
   std::vector<float> rung_;
