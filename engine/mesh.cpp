@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace plc {
 
@@ -147,12 +148,9 @@ void Mesh::remove(uint32_t v, uint32_t neighbor) {
 }
 
 void Mesh::clear() {
-  slots_ = alive_ = created_ = 0;
-  free_.clear();
-  tail_.clear();
-  for (auto& list : free_tails_) list.clear();
-  columns_.clear();
-  valence_.clear();
+  Mesh empty;
+  empty.delta = delta;
+  *this = std::move(empty);
 }
 
 void Mesh::reserve(uint32_t vertices) {

@@ -324,6 +324,15 @@ TEST_CASE("a cleared mesh is empty and can be filled again", "[mesh]") {
   CHECK(slots_are_filled(mesh));
 }
 
+TEST_CASE("a mesh that is filled again has nothing of its past in the padding", "[mesh]") {
+  // A speed left there would count as the fastest vertex.
+  Mesh mesh;
+  samples::fill_mesh(mesh, samples::sphere(2), 1);
+  for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.velocity.set(v, {1, 2, 3});
+  samples::fill_mesh(mesh, samples::octahedron(), 1);
+  for (uint32_t v = 0; v < mesh.padded(); ++v) CHECK(plc::length(mesh.velocity.at(v)) == 0);
+}
+
 TEST_CASE("reserving makes room without adding vertices", "[mesh]") {
   Mesh mesh;
   samples::fill_mesh(mesh, samples::octahedron(), 1);

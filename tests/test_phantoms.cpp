@@ -23,6 +23,7 @@ std::vector<double> values(const LoadedVolume& volume) {
     std::vector<T> raw(volume.bytes.size() / sizeof(T));
     std::memcpy(raw.data(), volume.bytes.data(), volume.bytes.size());
     std::vector<double> result;
+    result.reserve(raw.size());
     for (const T value : raw) {
       result.push_back(static_cast<double>(value) / full_scale(volume.image.type));
     }

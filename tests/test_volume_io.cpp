@@ -110,6 +110,7 @@ void check_nifti(int16_t datatype, plc_voxel_type type) {
   folder.put("a.nii", file);
   folder.put("a.nii.gz", samples::deflated(file, true));
   std::vector<To> expected;
+  expected.reserve(values.size());
   for (const From value : values) expected.push_back(static_cast<To>(value));
   for (const char* const name : {"a.nii", "a.nii.gz"}) {
     CAPTURE(name, datatype);
@@ -369,7 +370,7 @@ TEST_CASE("Files that are no volumes give one line that says why", "[volume_io]"
   const fixtures::Folder folder;
   const auto message = [&](const std::string& name, const std::string& file) {
     const std::string path = folder.put(name, file);
-    const std::string text = failure_of([&] { read_volume(path); });
+    std::string text = failure_of([&] { read_volume(path); });
     CHECK_THAT(text, Catch::StartsWith(path));
     return text;
   };

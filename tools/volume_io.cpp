@@ -16,13 +16,14 @@
 namespace plc::tools {
 namespace {
 
+// Every From here has values that a To holds, or rounds to its nearest.
 template <typename From, typename To>
 void convert(const std::vector<std::byte>& from, LoadedVolume& to) {
   const size_t count = from.size() / sizeof(From);
   for (size_t i = 0; i < count; ++i) {
     From value;
     std::memcpy(&value, from.data() + i * sizeof(From), sizeof(From));
-    const To converted = static_cast<To>(value);
+    const auto converted = static_cast<To>(value);  // NOLINT(bugprone-signed-char-misuse): a number
     std::memcpy(to.bytes.data() + i * sizeof(To), &converted, sizeof(To));
   }
 }

@@ -1,5 +1,14 @@
 #include "tools/volume_io_itk.h"
 
+// Debian's ITK was built by GCC and its headers turn every other compiler away, Clang and
+// clang-tidy among them. What their detection defines and the headers below use:
+#ifdef __clang__
+#define ITK_COMPILER_DETECTION_H
+#define ITK_NOEXCEPT noexcept
+#define VXL_COMPILER_DETECTION_H
+#define VXL_DEPRECATED_MSG(text)
+#endif
+
 #include <fcntl.h>
 #include <gdcmImageHelper.h>
 #include <gdcmReader.h>

@@ -100,7 +100,7 @@ std::string path_suffix(const std::string& path) {
     return text;
   };
   const std::filesystem::path name(path);
-  const std::string last = lower(name.extension().string());
+  std::string last = lower(name.extension().string());
   if (last != ".gz") return last;
   return lower(name.stem().extension().string()) + last;
 }
