@@ -18,6 +18,7 @@ using plc::RestLength;
 using reference::ball;
 using reference::Image;
 using reference::length;
+using reference::operator-;
 using reference::Points;
 using reference::Reference;
 using reference::to_point;
