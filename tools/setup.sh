@@ -6,7 +6,7 @@ set -euo pipefail
 
 build=(g++ cmake make libhwy-dev libtbb-dev libmimalloc-dev libinsighttoolkit5-dev libarchive-dev
   libexpat1-dev zlib1g-dev libembree-dev libpng-dev libcli11-dev nlohmann-json3-dev)
-test=(catch2)
+test=(catch2 invesalius-examples)
 demo=(invesalius-examples)
 lint=(clang-format clang-tidy)
 perf=(jq)
