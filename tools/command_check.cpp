@@ -106,20 +106,17 @@ void print_table(const plc_check& c) {
   for (const auto& [name, value] : rows) std::printf("%-29s %s\n", name, value.c_str());
 }
 
-plc_check check_of(const TriangleMesh& mesh) {
-  plc_context_options context_options;
-  plc_context_options_defaults(&context_options);
-  const ContextHandle context = make_context(context_options);
+}  // namespace
+
+plc_check check_of(plc_context* context, const TriangleMesh& mesh) {
   plc_check check{};
   check.struct_size = sizeof check;
   const plc_status status =
-      plc_check_mesh(context.get(), mesh.xyz.data(), static_cast<int64_t>(mesh.xyz.size() / 3),
+      plc_check_mesh(context, mesh.xyz.data(), static_cast<int64_t>(mesh.xyz.size() / 3),
                      mesh.abc.data(), static_cast<int64_t>(mesh.abc.size() / 3), &check);
-  if (status != PLC_OK) throw failure_of(context.get(), status);
+  if (status != PLC_OK) throw failure_of(context, status);
   return check;
 }
-
-}  // namespace
 
 void add_check_options(CLI::App& command, CheckOptions& options) {
   command.add_option("MESH", options.mesh, ".stl, .ply, .obj, .off or .vtp")
@@ -129,7 +126,10 @@ void add_check_options(CLI::App& command, CheckOptions& options) {
 }
 
 int run_check(const CheckOptions& options) {
-  const plc_check check = check_of(read_mesh(options.mesh));
+  plc_context_options context_options;
+  plc_context_options_defaults(&context_options);
+  const ContextHandle context = make_context(context_options);
+  const plc_check check = check_of(context.get(), read_mesh(options.mesh));
   if (options.json) {
     std::puts(check_json(options.mesh, check).dump(2).c_str());
   } else {

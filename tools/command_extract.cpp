@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "tools/command_check.h"
 #include "tools/engine_handles.h"
 #include "tools/interrupt.h"
 #include "tools/mesh_io.h"
@@ -15,6 +16,8 @@
 namespace plc::tools {
 
 namespace {
+
+constexpr int kExitInvalid = 1;
 
 double now() {
   using Clock = std::chrono::steady_clock;
@@ -102,7 +105,10 @@ int run_extract(const ExtractOptions& options) {
   interrupt.only_note();
   const double written = now();
   const plc_measures measures = measures_of(context.get(), surface.get());
-  write_mesh(options.output, mesh_of(surface.get(), options.space));
+  const TriangleMesh mesh = mesh_of(surface.get(), options.space);
+  // The engine's promise is about its own mesh space; this one is rounded to another.
+  const plc_check check = check_of(context.get(), mesh);
+  write_mesh(options.output, mesh);
   timings.write = now() - written;
   timings.total = now() - start;
   if (!options.report.empty()) {
@@ -112,6 +118,11 @@ int run_extract(const ExtractOptions& options) {
   if (!options.quiet) {
     std::fputs(summary(volume.image, surface.get(), measures, timings, options.output).c_str(),
                stdout);
+  }
+  if (check.valid == 0) {
+    std::fprintf(stderr, "pellicle: %s: written, but not valid as `pellicle check` tells\n",
+                 options.output.c_str());
+    return kExitInvalid;
   }
   return 0;
 }

@@ -44,7 +44,7 @@ void ProgressLine::update(const plc_progress& p) {
   due_ = p.seconds + (terminal_ ? kTerminalPeriod : kLinePeriod);
   char text[160];
   std::snprintf(text, sizeof text,
-                "level %d of %d..0, iteration %d, %" PRId64 " vertices, energy %.1e%s", p.level,
+                "level %d (%d to 0), iteration %d, %" PRId64 " vertices, energy %.1e%s", p.level,
                 p.levels, p.iteration, p.vertices, p.energy, left_of(p).c_str());
   std::fprintf(stderr, terminal_ ? "\r\033[K%s" : "%s\n", text);
   std::fflush(stderr);
