@@ -1,0 +1,84 @@
+// The C API for the tests: contexts, images and surfaces that clean up after themselves.
+#pragma once
+#include <array>
+#include <catch2/catch.hpp>
+#include <memory>
+#include <vector>
+
+#include "engine/pellicle.h"
+#include "tests/sample_volumes.h"
+
+namespace samples {
+
+struct Destroy {
+  void operator()(plc_context* context) const { plc_context_destroy(context); }
+  void operator()(plc_surface* surface) const { plc_surface_destroy(surface); }
+};
+using Context = std::unique_ptr<plc_context, Destroy>;
+using Surface = std::unique_ptr<plc_surface, Destroy>;
+
+inline Context make_context(int threads = 1, plc_simd simd = PLC_SIMD_AUTO) {
+  plc_context_options options;
+  plc_context_options_defaults(&options);
+  options.threads = threads;
+  options.simd = simd;
+  plc_context* context = nullptr;
+  REQUIRE(plc_context_create(&options, &context, nullptr, 0) == PLC_OK);
+  return Context(context);
+}
+
+inline plc_image image_of(const Volume& volume) {
+  plc_image image;
+  plc_image_defaults(&image);
+  image.type = PLC_F32;
+  image.voxels = volume.values.data();
+  for (size_t a = 0; a < 3; ++a) {
+    image.dims[a] = volume.dims[a];
+    image.spacing[a] = volume.spacing[a];
+  }
+  return image;
+}
+
+inline plc_parameters parameters(double iso, int levels) {
+  plc_parameters p;
+  plc_parameters_defaults(&p);
+  p.iso = iso;
+  p.levels = levels;
+  p.curvature = 0.1;
+  return p;
+}
+
+inline Surface extract(plc_context* context, const plc_image& image, const plc_parameters& p) {
+  plc_surface* surface = nullptr;
+  const plc_status status = plc_extract(context, &image, &p, nullptr, nullptr, &surface);
+  INFO(plc_context_message(context));
+  REQUIRE(status == PLC_OK);
+  return Surface(surface);
+}
+
+inline std::vector<float> positions(const plc_surface* surface, plc_space space) {
+  std::vector<float> xyz(static_cast<size_t>(plc_surface_vertex_count(surface)) * 3);
+  plc_surface_positions(surface, space, xyz.data());
+  return xyz;
+}
+
+inline std::vector<uint32_t> faces(const plc_surface* surface, plc_space space) {
+  std::vector<uint32_t> abc(static_cast<size_t>(plc_surface_face_count(surface)) * 3);
+  plc_surface_faces(surface, space, abc.data());
+  return abc;
+}
+
+inline std::vector<float> normals(const plc_surface* surface, plc_space space) {
+  std::vector<float> xyz(static_cast<size_t>(plc_surface_vertex_count(surface)) * 3);
+  plc_surface_normals(surface, space, xyz.data());
+  return xyz;
+}
+
+inline plc_measures measured(plc_context* context, const plc_surface* surface, plc_space space) {
+  plc_measures measures{};
+  measures.struct_size = sizeof measures;
+  REQUIRE(plc_surface_measure(context, surface, space, &measures) == PLC_OK);
+  return measures;
+}
+
+}  // namespace samples
