@@ -42,7 +42,7 @@ Status check_image(const plc_image& image) {
 class Extraction {
  public:
   Extraction(plc_context& context, const plc_image& image, const plc_parameters& parameters)
-      : context_(context), image_(image), surface_(std::make_unique<plc_surface>()) {
+      : context_(context), surface_(std::make_unique<plc_surface>()) {
     surface_->parameters = parameters;
     volume_.type = static_cast<VoxelType>(image.type);
     volume_.voxels = image.voxels;
@@ -120,7 +120,6 @@ class Extraction {
   }
 
   plc_context& context_;
-  const plc_image& image_;
   std::unique_ptr<plc_surface> surface_;
   VolumeView volume_;
   Pyramid pyramid_;
