@@ -17,8 +17,7 @@ using plc::RestLength;
 
 using reference::ball;
 using reference::Image;
-using reference::length;
-using reference::operator-;
+using reference::distance;
 using reference::Points;
 using reference::Reference;
 using reference::to_point;
@@ -47,7 +46,7 @@ void step(Mesh& mesh, plc::Dynamics& dynamics, const Image& image) {
 double difference(const plc::Streams3& streams, const Points& expected) {
   double most = 0;
   for (uint32_t v = 0; v < expected.size(); ++v) {
-    most = std::max(most, length(to_point(streams.at(v)) - expected[v]));
+    most = std::max(most, distance(to_point(streams.at(v)), expected[v]));
   }
   return most;
 }

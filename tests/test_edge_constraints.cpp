@@ -11,7 +11,6 @@ namespace {
 
 using plc::Mesh;
 using plc::Operation;
-using samples::Soup;
 
 // An octahedron: edge 0-2 runs from (1,0,0) to (0,1,0), its apexes are (0,0,1) and (0,0,-1).
 constexpr uint32_t kU = 0, kV = 2;
