@@ -19,7 +19,14 @@ using plc::Mesh;
 using plc::Operation;
 using samples::Run;
 
+// Sanitizers are ten times slower.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr uint64_t kSeeds = 12;
+constexpr int64_t kFinished = 10;
+#else
 constexpr uint64_t kSeeds = 270;
+constexpr int64_t kFinished = 200;
+#endif
 
 // Violations of (1) and (2) at the end of a level.
 struct Leftovers {
@@ -241,5 +248,5 @@ TEST_CASE("random evolutions stay closed, oriented and embedded in every iterati
             << " iterations; faces that meet after any: " << sum.meeting
             << "; edges at the ends of levels: " << sum.left.edges << ", " << sum.left.violated
             << " violate (1) or (2)" << std::endl;
-  CHECK((only != nullptr || finished >= 200));
+  CHECK((only != nullptr || finished >= kFinished));
 }

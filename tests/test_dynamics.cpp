@@ -16,8 +16,8 @@ using plc::Model;
 using plc::RestLength;
 
 using reference::ball;
-using reference::Image;
 using reference::distance;
+using reference::Image;
 using reference::Points;
 using reference::Reference;
 using reference::to_point;
