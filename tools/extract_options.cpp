@@ -169,8 +169,9 @@ class Declarations {
 
  private:
   CLI::Option* text(const std::string& name, const std::string& type, const std::string& fallback,
-                    const std::string& meaning, std::function<void(const std::string&)> read) {
-    return command_.add_option_function<std::string>(name, std::move(read), meaning)
+                    const std::string& meaning,
+                    const std::function<void(const std::string&)>& read) {
+    return command_.add_option_function<std::string>(name, read, meaning)
         ->type_name(type)
         ->default_str(fallback);
   }
