@@ -215,8 +215,9 @@ void Renderer::Scene::draw_row(const Camera& camera, Picture& picture, int left,
     const auto pixel = static_cast<uint32_t>(row * size + column);
     Vec3f sum;
     for (int s = 0; s < kGrid * kGrid; ++s) {
+      const int part_of_row = s / kGrid;
       const float x = static_cast<float>(column) + (static_cast<float>(s % kGrid) + 0.5F) / kGrid;
-      const float y = static_cast<float>(row) + (static_cast<float>(s / kGrid) + 0.5F) / kGrid;
+      const float y = static_cast<float>(row) + (static_cast<float>(part_of_row) + 0.5F) / kGrid;
       const float scale = 2 / static_cast<float>(size);
       const Vec3f d = camera.direction(x * scale - 1, 1 - y * scale);
       sum = sum + shade(camera, d, pixel, static_cast<uint32_t>(s), background);
