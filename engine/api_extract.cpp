@@ -33,8 +33,8 @@ Status check_image(const plc_image& image) {
   const double* d = image.direction;
   const double det = d[0] * (d[4] * d[8] - d[5] * d[7]) - d[1] * (d[3] * d[8] - d[5] * d[6]) +
                      d[2] * (d[3] * d[7] - d[4] * d[6]);
-  if (!(std::abs(det) > 1e-6)) {
-    return {ErrorCode::kInvalidData, "image: the direction cosines are singular"};
+  if (!(std::abs(det) > 1e-6) || !std::isfinite(det)) {
+    return {ErrorCode::kInvalidData, "image: the direction cosines are singular or not finite"};
   }
   return {};
 }

@@ -173,8 +173,10 @@ TEST_CASE("an image that cannot be used is refused in words", "[pellicle]") {
              Contains("origin is not finite"));
   CHECK_THAT(failure(PLC_INVALID_DATA, [](plc_image& i) { i.direction[4] = 0; }),
              Contains("direction cosines are singular"));
-  CHECK_THAT(failure(PLC_INVALID_DATA, [](plc_image& i) { i.direction[4] = kNan; }),
-             Contains("direction cosines"));
+  for (const double cosine : {kNan, HUGE_VAL}) {
+    CHECK_THAT(failure(PLC_INVALID_DATA, [&](plc_image& i) { i.direction[4] = cosine; }),
+               Contains("direction cosines"));
+  }
 }
 
 TEST_CASE("voxels that are NaN or infinite are counted and refused", "[pellicle]") {
