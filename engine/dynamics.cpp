@@ -123,7 +123,7 @@ void Dynamics::stage_forces(int stage, const ImageView& image, float iso, uint32
   }
   if (model_.spring > 0) {
     kernels::spring_force(simd_, mesh_.rings(), stage_position(stage), model_.spring, rest_length_,
-                          begin, end, fx, fy, fz);
+                          {}, begin, end, fx, fy, fz);
   }
   kernels::iso_force(simd_, image, stage_position(stage), mesh_.normal.x.data(),
                      mesh_.normal.y.data(), mesh_.normal.z.data(),
@@ -164,7 +164,7 @@ void Dynamics::measure_rest_length() {
     return;
   }
   const double sum = block_sum([this](uint32_t begin, uint32_t end) {
-    return kernels::edge_length_sum(simd_, mesh_.rings(), mesh_.packed.data(), begin, end);
+    return kernels::edge_length_sum(simd_, mesh_.rings(), mesh_.packed.data(), {}, begin, end);
   });
   // Twice the edges of a closed mesh: the sum of the valences.
   uint64_t ends = 0;

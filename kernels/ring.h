@@ -34,6 +34,11 @@ struct RingView {
   }
 };
 
+// A diagonal metric: how long a unit of each axis of mesh space is (4.4, third method).
+struct Metric {
+  float x = 1, y = 1, z = 1;
+};
+
 // A record that is fetched by neighbour index: one aligned 16-byte load. w is 0.
 struct alignas(16) Packed {
   float x, y, z, w;

@@ -18,6 +18,7 @@ using scalar::curvature_force;
 using scalar::edge_length_sum;
 using scalar::edge_violations;
 using scalar::laplacian;
+using scalar::metric_normals;
 using scalar::normals;
 using scalar::spring_force;
 #else
@@ -124,13 +125,26 @@ void curvature_force(const RingView& ring, const Packed* laplacian, float alpha_
   }
 }
 
+HWY_INLINE Floats3 scaled(const Floats3& a, const Floats3& s) {
+  return {hn::Mul(a.x, s.x), hn::Mul(a.y, s.y), hn::Mul(a.z, s.z)};
+}
+HWY_INLINE Floats length_in(const Floats3& metric, const Floats3& edge) {
+  const Floats3 measured = scaled(edge, metric);
+  return hn::Sqrt(dot(measured, measured));
+}
+HWY_INLINE Floats3 spread(const Metric& metric) {
+  const FloatTag d;
+  return {hn::Set(d, metric.x), hn::Set(d, metric.y), hn::Set(d, metric.z)};
+}
+
 struct SpringSum {
   Floats3 centre;
   Floats rest_length;
+  Floats3 metric;
   Floats3 sum = zero3();
   HWY_INLINE void add(FloatMask has_slot, const Floats3& neighbour) {
     const Floats3 edge = neighbour - centre;
-    const Floats length = hn::Sqrt(dot(edge, edge));
+    const Floats length = length_in(metric, edge);
     const FloatMask apart = hn::And(has_slot, hn::Gt(length, hn::Zero(FloatTag())));
     const Floats pull = hn::Div(hn::Sub(length, rest_length), length);
     sum = sum + where(apart, edge * pull);
@@ -138,16 +152,17 @@ struct SpringSum {
 };
 
 void spring_force(const RingView& ring, const Packed* position, float alpha_e, float rest_length,
-                  uint32_t begin, uint32_t end, float* fx, float* fy, float* fz) {
+                  const Metric& metric, uint32_t begin, uint32_t end, float* fx, float* fy,
+                  float* fz) {
   const FloatTag d;
   const Floats alpha = hn::Set(d, alpha_e);
   for (uint32_t v = begin; v < end; v += kLanes) {
     const Floats valence = load_valence(ring, v);
-    SpringSum walk{load_packed(position + v), hn::Set(d, rest_length)};
+    SpringSum walk{load_packed(position + v), hn::Set(d, rest_length), spread(metric)};
     walk_ring(ring, position, v, valence, walk);
     if (HWY_UNLIKELY(has_tails(valence))) {
       walk.sum = with_tails(ring, v, walk.sum, [&](uint32_t u) {
-        return scalar::spring_sum(ring, position, rest_length, u);
+        return scalar::spring_sum(ring, position, rest_length, metric, u);
       });
     }
     store3(load3(fx, fy, fz, v) + walk.sum * alpha, fx, fy, fz, v);
@@ -191,6 +206,23 @@ void normals(const RingView& ring, const Packed* position, uint32_t begin, uint3
   }
 }
 
+void metric_normals(const Metric& metric, const float* nx, const float* ny, const float* nz,
+                    uint32_t begin, uint32_t end, float* mx, float* my, float* mz, float* step_x,
+                    float* step_y, float* step_z) {
+  const FloatTag d;
+  const Floats one = hn::Set(d, 1.0F);
+  const Floats3 lengths = spread(metric);
+  const Floats3 inverse{hn::Div(one, lengths.x), hn::Div(one, lengths.y), hn::Div(one, lengths.z)};
+  for (uint32_t v = begin; v < end; v += kLanes) {
+    const Floats3 k = scaled(load3(nx, ny, nz, v), inverse);
+    const Floats length = hn::Sqrt(dot(k, k));
+    const FloatMask some = hn::Gt(length, hn::Zero(d));
+    const Floats3 m = k * hn::IfThenElseZero(some, hn::Div(one, length));
+    store3(m, mx, my, mz, v);
+    store3(scaled(m, inverse), step_x, step_y, step_z, v);
+  }
+}
+
 struct EdgeLimits {
   Floats3 centre;
   Floats min_squared, max_squared;
@@ -227,24 +259,25 @@ void edge_violations(const RingView& ring, const Packed* position, float min_squ
 
 struct LengthSum {
   Floats3 centre;
+  Floats3 metric;
   Floats sum = hn::Zero(FloatTag());
   HWY_INLINE void add(FloatMask has_slot, const Floats3& neighbour) {
-    const Floats3 edge = neighbour - centre;
-    sum = hn::Add(sum, hn::IfThenElseZero(has_slot, hn::Sqrt(dot(edge, edge))));
+    sum = hn::Add(sum, hn::IfThenElseZero(has_slot, length_in(metric, neighbour - centre)));
   }
 };
 
-double edge_length_sum(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end) {
+double edge_length_sum(const RingView& ring, const Packed* position, const Metric& metric,
+                       uint32_t begin, uint32_t end) {
   LaneSums sums;
   for (uint32_t block = begin; block < end; block += kRingLanes) {
     for (uint32_t part = 0; part < kRingLanes / kLanes; ++part) {
       const uint32_t v = block + part * kLanes;
       const Floats valence = load_valence(ring, v);
-      LengthSum walk{load_packed(position + v)};
+      LengthSum walk{load_packed(position + v), spread(metric)};
       walk_ring(ring, position, v, valence, walk);
       if (HWY_UNLIKELY(has_tails(valence))) {
         walk.sum = with_tails(ring, v, {walk.sum, walk.sum, walk.sum}, [&](uint32_t u) {
-                     return scalar::Triple{scalar::length_sum(ring, position, u), 0, 0};
+                     return scalar::Triple{scalar::length_sum(ring, position, metric, u), 0, 0};
                    }).x;
       }
       sums.add(part, low_doubles(walk.sum), high_doubles(walk.sum));
@@ -266,6 +299,7 @@ HWY_EXPORT(laplacian);
 HWY_EXPORT(curvature_force);
 HWY_EXPORT(spring_force);
 HWY_EXPORT(normals);
+HWY_EXPORT(metric_normals);
 HWY_EXPORT(edge_violations);
 HWY_EXPORT(edge_length_sum);
 
@@ -280,14 +314,22 @@ void curvature_force(SimdTarget simd, const RingView& ring, const Packed* laplac
 }
 
 void spring_force(SimdTarget simd, const RingView& ring, const Packed* position, float alpha_e,
-                  float rest_length, uint32_t begin, uint32_t end, float* fx, float* fy,
-                  float* fz) {
-  PLC_DISPATCH(simd, spring_force)(ring, position, alpha_e, rest_length, begin, end, fx, fy, fz);
+                  float rest_length, const Metric& metric, uint32_t begin, uint32_t end, float* fx,
+                  float* fy, float* fz) {
+  PLC_DISPATCH(simd, spring_force)
+  (ring, position, alpha_e, rest_length, metric, begin, end, fx, fy, fz);
 }
 
 void normals(SimdTarget simd, const RingView& ring, const Packed* position, uint32_t begin,
              uint32_t end, float* nx, float* ny, float* nz) {
   PLC_DISPATCH(simd, normals)(ring, position, begin, end, nx, ny, nz);
+}
+
+void metric_normals(SimdTarget simd, const Metric& metric, const float* nx, const float* ny,
+                    const float* nz, uint32_t begin, uint32_t end, float* mx, float* my, float* mz,
+                    float* step_x, float* step_y, float* step_z) {
+  PLC_DISPATCH(simd, metric_normals)
+  (metric, nx, ny, nz, begin, end, mx, my, mz, step_x, step_y, step_z);
 }
 
 void edge_violations(SimdTarget simd, const RingView& ring, const Packed* position,
@@ -298,8 +340,8 @@ void edge_violations(SimdTarget simd, const RingView& ring, const Packed* positi
 }
 
 double edge_length_sum(SimdTarget simd, const RingView& ring, const Packed* position,
-                       uint32_t begin, uint32_t end) {
-  return PLC_DISPATCH(simd, edge_length_sum)(ring, position, begin, end);
+                       const Metric& metric, uint32_t begin, uint32_t end) {
+  return PLC_DISPATCH(simd, edge_length_sum)(ring, position, metric, begin, end);
 }
 
 }  // namespace plc::kernels

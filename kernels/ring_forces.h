@@ -20,14 +20,23 @@ void laplacian(SimdTarget simd, const RingView& ring, const Packed* position, ui
 void curvature_force(SimdTarget simd, const RingView& ring, const Packed* laplacian, float alpha_c,
                      uint32_t begin, uint32_t end, float* fx, float* fy, float* fz);
 
-// f += alpha_e sum (|y - x| - rest_length) (y - x) / |y - x|: eq. (6). Coincident neighbours add 0.
+// f += alpha_e sum (|y - x| - rest_length) (y - x) / |y - x|: eq. (6), with lengths in the metric.
+// Coincident neighbours add 0.
 void spring_force(SimdTarget simd, const RingView& ring, const Packed* position, float alpha_e,
-                  float rest_length, uint32_t begin, uint32_t end, float* fx, float* fy, float* fz);
+                  float rest_length, const Metric& metric, uint32_t begin, uint32_t end, float* fx,
+                  float* fy, float* fz);
 
 // Unit normal, outward: the sum of the cross products of successive ring edges (the face between
 // the last slot and slot 0 comes last), normalised; 0 where the sum is 0.
 void normals(SimdTarget simd, const RingView& ring, const Packed* position, uint32_t begin,
              uint32_t end, float* nx, float* ny, float* nz);
+
+// From unit normals n in mesh coordinates to unit normals m in the metric - area vectors map by the
+// inverse of the lengths - and to the unit step along m in mesh coordinates; 0 where n is 0:
+//   k = (n.x * (1/metric.x), ...);  m = k / |k|;  step = (m.x * (1/metric.x), ...)
+void metric_normals(SimdTarget simd, const Metric& metric, const float* nx, const float* ny,
+                    const float* nz, uint32_t begin, uint32_t end, float* mx, float* my, float* mz,
+                    float* step_x, float* step_y, float* step_z);
 
 // flags[v]: bit 0 when some edge of v is not longer than sqrt(min_squared) (constraint (1)), bit 1
 // when some edge is not shorter than sqrt(max_squared) (constraint (2)).
@@ -35,9 +44,10 @@ void edge_violations(SimdTarget simd, const RingView& ring, const Packed* positi
                      float min_squared, float max_squared, uint32_t begin, uint32_t end,
                      uint8_t* flags);
 
-// Sum of the lengths of all edges seen from each vertex of the range (each edge of a mesh counts
-// twice over the mesh): each ring in float, the vertices in double in the order of lane_sum.h.
+// Sum of the lengths in the metric of all edges seen from each vertex of the range (each edge of a
+// mesh counts twice over the mesh): each ring in float, the vertices in double in the order of
+// lane_sum.h.
 double edge_length_sum(SimdTarget simd, const RingView& ring, const Packed* position,
-                       uint32_t begin, uint32_t end);
+                       const Metric& metric, uint32_t begin, uint32_t end);
 
 }  // namespace plc::kernels

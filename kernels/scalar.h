@@ -21,11 +21,12 @@ struct Triple {
 // valence > kRingSlots, which are too rare to be worth vectors.
 Triple difference_sum(const RingView& ring, const Packed* position, uint32_t v);  // y - x
 Triple record_sum(const RingView& ring, const Packed* record, uint32_t v);
-Triple spring_sum(const RingView& ring, const Packed* position, float rest_length, uint32_t v);
+Triple spring_sum(const RingView& ring, const Packed* position, float rest_length,
+                  const Metric& metric, uint32_t v);
 Triple normal_sum(const RingView& ring, const Packed* position, uint32_t v);  // cross products
 uint8_t violation_flags(const RingView& ring, const Packed* position, float min_squared,
                         float max_squared, uint32_t v);
-float length_sum(const RingView& ring, const Packed* position, uint32_t v);
+float length_sum(const RingView& ring, const Packed* position, const Metric& metric, uint32_t v);
 
 // ring_forces.h
 void laplacian(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end,
@@ -33,12 +34,17 @@ void laplacian(const RingView& ring, const Packed* position, uint32_t begin, uin
 void curvature_force(const RingView& ring, const Packed* laplacian, float alpha_c, uint32_t begin,
                      uint32_t end, float* fx, float* fy, float* fz);
 void spring_force(const RingView& ring, const Packed* position, float alpha_e, float rest_length,
-                  uint32_t begin, uint32_t end, float* fx, float* fy, float* fz);
+                  const Metric& metric, uint32_t begin, uint32_t end, float* fx, float* fy,
+                  float* fz);
 void normals(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end, float* nx,
              float* ny, float* nz);
+void metric_normals(const Metric& metric, const float* nx, const float* ny, const float* nz,
+                    uint32_t begin, uint32_t end, float* mx, float* my, float* mz, float* step_x,
+                    float* step_y, float* step_z);
 void edge_violations(const RingView& ring, const Packed* position, float min_squared,
                      float max_squared, uint32_t begin, uint32_t end, uint8_t* flags);
-double edge_length_sum(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end);
+double edge_length_sum(const RingView& ring, const Packed* position, const Metric& metric,
+                       uint32_t begin, uint32_t end);
 
 // image_force.h
 void sample_trilinear(const ImageView& image, const Packed* position, uint32_t begin, uint32_t end,

@@ -18,6 +18,10 @@ float squared(const Triple& a) {
   return a.x * a.x + a.y * a.y + a.z * a.z;
 }
 
+float length_in(const Metric& metric, const Triple& edge) {
+  return std::sqrt(squared({edge.x * metric.x, edge.y * metric.y, edge.z * metric.z}));
+}
+
 void add(Triple& sum, const Triple& term) {
   sum.x += term.x;
   sum.y += term.y;
@@ -48,11 +52,12 @@ Triple record_sum(const RingView& ring, const Packed* record, uint32_t v) {
   return sum;
 }
 
-Triple spring_sum(const RingView& ring, const Packed* position, float rest_length, uint32_t v) {
+Triple spring_sum(const RingView& ring, const Packed* position, float rest_length,
+                  const Metric& metric, uint32_t v) {
   Triple sum;
   for (uint32_t k = 0; k < ring.valence[v]; ++k) {
     const Triple edge = difference(position[ring.slot(v, k)], position[v]);
-    const float length = std::sqrt(squared(edge));
+    const float length = length_in(metric, edge);
     const float pull = length > 0.0F ? (length - rest_length) / length : 0.0F;
     add(sum, {pull * edge.x, pull * edge.y, pull * edge.z});
   }
@@ -85,10 +90,10 @@ uint8_t violation_flags(const RingView& ring, const Packed* position, float min_
   return flags;
 }
 
-float length_sum(const RingView& ring, const Packed* position, uint32_t v) {
+float length_sum(const RingView& ring, const Packed* position, const Metric& metric, uint32_t v) {
   float sum = 0;
   for (uint32_t k = 0; k < ring.valence[v]; ++k) {
-    sum += std::sqrt(squared(difference(position[ring.slot(v, k)], position[v])));
+    sum += length_in(metric, difference(position[ring.slot(v, k)], position[v]));
   }
   return sum;
 }
@@ -115,9 +120,10 @@ void curvature_force(const RingView& ring, const Packed* laplacian, float alpha_
 }
 
 void spring_force(const RingView& ring, const Packed* position, float alpha_e, float rest_length,
-                  uint32_t begin, uint32_t end, float* fx, float* fy, float* fz) {
+                  const Metric& metric, uint32_t begin, uint32_t end, float* fx, float* fy,
+                  float* fz) {
   for (uint32_t v = begin; v < end; ++v) {
-    const Triple sum = spring_sum(ring, position, rest_length, v);
+    const Triple sum = spring_sum(ring, position, rest_length, metric, v);
     fx[v] = fx[v] + alpha_e * sum.x;
     fy[v] = fy[v] + alpha_e * sum.y;
     fz[v] = fz[v] + alpha_e * sum.z;
@@ -136,6 +142,23 @@ void normals(const RingView& ring, const Packed* position, uint32_t begin, uint3
   }
 }
 
+void metric_normals(const Metric& metric, const float* nx, const float* ny, const float* nz,
+                    uint32_t begin, uint32_t end, float* mx, float* my, float* mz, float* step_x,
+                    float* step_y, float* step_z) {
+  const Triple inverse{1.0F / metric.x, 1.0F / metric.y, 1.0F / metric.z};
+  for (uint32_t v = begin; v < end; ++v) {
+    const Triple k{nx[v] * inverse.x, ny[v] * inverse.y, nz[v] * inverse.z};
+    const float length = std::sqrt(squared(k));
+    const float unit = length > 0.0F ? 1.0F / length : 0.0F;
+    mx[v] = k.x * unit;
+    my[v] = k.y * unit;
+    mz[v] = k.z * unit;
+    step_x[v] = mx[v] * inverse.x;
+    step_y[v] = my[v] * inverse.y;
+    step_z[v] = mz[v] * inverse.z;
+  }
+}
+
 void edge_violations(const RingView& ring, const Packed* position, float min_squared,
                      float max_squared, uint32_t begin, uint32_t end, uint8_t* flags) {
   for (uint32_t v = begin; v < end; ++v) {
@@ -143,10 +166,11 @@ void edge_violations(const RingView& ring, const Packed* position, float min_squ
   }
 }
 
-double edge_length_sum(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end) {
+double edge_length_sum(const RingView& ring, const Packed* position, const Metric& metric,
+                       uint32_t begin, uint32_t end) {
   double lane[kRingLanes] = {};
   for (uint32_t v = begin; v < end; ++v) {
-    lane[v % kRingLanes] += static_cast<double>(length_sum(ring, position, v));
+    lane[v % kRingLanes] += static_cast<double>(length_sum(ring, position, metric, v));
   }
   return add_lanes(lane);
 }

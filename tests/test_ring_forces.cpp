@@ -71,6 +71,12 @@ void require_near(const Streams& got, const std::vector<Vector>& expected, uint3
   }
 }
 
+// The length of a vector in a metric, and its axes times those of the metric.
+Vector scaled(const Vector& a, const plc::Metric& m) {
+  return {a[0] * double{m.x}, a[1] * double{m.y}, a[2] * double{m.z}};
+}
+constexpr plc::Metric kMetrics[] = {{1, 1, 1}, {1, 1.25F, 4.7F}};
+
 // Ranges of 160 vertices: whole, inner blocks, one block, none.
 const std::vector<std::array<uint32_t, 2>> kRanges = {{0, 160}, {16, 112}, {144, 160}, {32, 32}};
 
@@ -133,14 +139,16 @@ TEST_CASE("the spring force is equation (6), added to what is there", "[kernels]
   RandomRings rings = mixed_rings(10, 3);
   rings.position[rings.rings[20][0]] = rings.position[20];  // coincident neighbours add nothing
   const float alpha = 0.3F;
-  for (const float rest : {0.0F, 120.0F}) {
+  for (const plc::Metric& metric : kMetrics) {
+    const float rest = metric.z == 1 ? 0.0F : 120.0F;
     std::vector<Vector> expected(rings.count());
     for (uint32_t v = 0; v < rings.count(); ++v) {
       expected[v] = {double{kUntouched}, double{kUntouched}, double{kUntouched}};
       for (const uint32_t u : rings.rings[v]) {
         const Vector edge = at(rings, u) - at(rings, v);
         if (length(edge) == 0) continue;
-        add(expected[v], edge, double{alpha} * (length(edge) - double{rest}) / length(edge));
+        const double measured = length(scaled(edge, metric));
+        add(expected[v], edge, double{alpha} * (measured - double{rest}) / measured);
       }
     }
     for (const SimdTarget simd : plc::available_simd_targets()) {
@@ -148,9 +156,9 @@ TEST_CASE("the spring force is equation (6), added to what is there", "[kernels]
         CAPTURE(plc::simd_target_name(simd), begin, end, rest);
         Streams got(rings.count(), kUntouched);
         Streams twin(rings.count(), kUntouched);
-        kernels::spring_force(simd, rings.view(), rings.position.data(), alpha, rest, begin, end,
-                              got.x.data(), got.y.data(), got.z.data());
-        scalar::spring_force(rings.view(), rings.position.data(), alpha, rest, begin, end,
+        kernels::spring_force(simd, rings.view(), rings.position.data(), alpha, rest, metric, begin,
+                              end, got.x.data(), got.y.data(), got.z.data());
+        scalar::spring_force(rings.view(), rings.position.data(), alpha, rest, metric, begin, end,
                              twin.x.data(), twin.y.data(), twin.z.data());
         REQUIRE(first_difference(got.all(), twin.all()) == -1);
         require_near(got, expected, begin, end, 2e-3);
@@ -265,17 +273,55 @@ TEST_CASE("edge violations are found in columns and tails alike", "[kernels]") {
 TEST_CASE("edge lengths add up to the same bits for every target", "[kernels]") {
   const RandomRings rings = mixed_rings(10, 8);
   for (const auto& [begin, end] : kRanges) {
-    double expected = 0;
-    for (uint32_t v = begin; v < end; ++v) {
-      for (const uint32_t u : rings.rings[v]) expected += length(at(rings, u) - at(rings, v));
+    for (const plc::Metric& metric : kMetrics) {
+      double expected = 0;
+      for (uint32_t v = begin; v < end; ++v) {
+        for (const uint32_t u : rings.rings[v]) {
+          expected += length(scaled(at(rings, u) - at(rings, v), metric));
+        }
+      }
+      const Packed* position = rings.position.data();
+      const double twin = scalar::edge_length_sum(rings.view(), position, metric, begin, end);
+      REQUIRE(twin == Approx(expected).epsilon(1e-6));
+      for (const SimdTarget simd : plc::available_simd_targets()) {
+        CAPTURE(plc::simd_target_name(simd), begin, end);
+        REQUIRE(kernels::edge_length_sum(simd, rings.view(), position, metric, begin, end) == twin);
+      }
     }
-    const double twin = scalar::edge_length_sum(rings.view(), rings.position.data(), begin, end);
-    REQUIRE(twin == Approx(expected).epsilon(1e-6));
-    for (const SimdTarget simd : plc::available_simd_targets()) {
-      CAPTURE(plc::simd_target_name(simd), begin, end);
-      REQUIRE(kernels::edge_length_sum(simd, rings.view(), rings.position.data(), begin, end) ==
-              twin);
-    }
+  }
+}
+
+TEST_CASE("normals of a metric are those of the surface with its axes stretched", "[kernels]") {
+  RandomRings rings = mixed_rings(10, 9);
+  const uint32_t n = rings.count();
+  const plc::Metric metric = kMetrics[1];
+  Streams normal(n, 0), stretched(n, 0);
+  const auto measure = [&](Streams& to) {
+    scalar::normals(rings.view(), rings.position.data(), 0, n, to.x.data(), to.y.data(),
+                    to.z.data());
+  };
+  measure(normal);
+  for (Packed& p : rings.position) p = {p.x * metric.x, p.y * metric.y, p.z * metric.z, 0};
+  measure(stretched);
+  std::vector<Vector> expected(n), step(n);
+  for (uint32_t v = 0; v < n; ++v) {
+    expected[v] = {double{stretched.x[v]}, double{stretched.y[v]}, double{stretched.z[v]}};
+    step[v] = scaled(expected[v], {1 / metric.x, 1 / metric.y, 1 / metric.z});
+  }
+  const auto run = [&](const auto& kernel) {
+    std::array<Streams, 2> to{Streams(n, 0), Streams(n, 0)};
+    kernel(metric, normal.x.data(), normal.y.data(), normal.z.data(), 0, n, to[0].x.data(),
+           to[0].y.data(), to[0].z.data(), to[1].x.data(), to[1].y.data(), to[1].z.data());
+    return to;
+  };
+  const auto twin = run(scalar::metric_normals);
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    CAPTURE(plc::simd_target_name(simd));
+    const auto got = run([&](auto... arguments) { kernels::metric_normals(simd, arguments...); });
+    REQUIRE(first_difference(got[0].all(), twin[0].all()) == -1);
+    REQUIRE(first_difference(got[1].all(), twin[1].all()) == -1);
+    require_near(got[0], expected, 0, n, 2e-5);
+    require_near(got[1], step, 0, n, 2e-5);
   }
 }
 

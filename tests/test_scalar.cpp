@@ -54,7 +54,7 @@ uint64_t hash_of_forces(SimdTarget simd) {
   const plc::ImageView image_view{image.data(), {60, 50, 40}, {0.2F, 0.2F, 0.2F}, {3, 4, 5}};
   kernels::laplacian(simd, view, position, 0, n, laplacian.data());
   kernels::curvature_force(simd, view, laplacian.data(), 0.3F, 0, n, fx, fy, fz);
-  kernels::spring_force(simd, view, position, 0.01F, 1.7F, 0, n, fx, fy, fz);
+  kernels::spring_force(simd, view, position, 0.01F, 1.7F, {}, 0, n, fx, fy, fz);
   kernels::normals(simd, view, position, 0, n, nx, ny, nz);
   kernels::iso_force(simd, image_view, position, nx, ny, nz, -1.2F, 0.4F, 0, n, fx, fy, fz);
   Hash hash;
@@ -63,7 +63,7 @@ uint64_t hash_of_forces(SimdTarget simd) {
     hash.add(force[a]);
     hash.add(normal[a]);
   }
-  hash.add(kernels::edge_length_sum(simd, view, position, 0, n));
+  hash.add(kernels::edge_length_sum(simd, view, position, {}, 0, n));
   hash.add(kernels::normal_energy_sum(simd, fx, fy, fz, nx, ny, nz, 0, n));
   return hash.value();
 }
