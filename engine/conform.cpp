@@ -1,0 +1,150 @@
+#include "engine/conform.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdio>
+#include <queue>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "engine/constants.h"
+#include "engine/creation.h"
+#include "engine/face_rings.h"
+#include "engine/mesh_invariants.h"
+#include "engine/refinement.h"
+#include "engine/resolution.h"
+#include "engine/self_meeting.h"
+
+namespace plc {
+
+namespace {
+
+// Pairs that an annular transformation has cut are never old enough to be joined again: without
+// forces they would be, for ever.
+constexpr uint32_t kIteration = 1;
+
+int64_t applied(const OperationCounts& c) {
+  return c.creation + c.inversion + c.deletion + c.annular + c.axial + c.tetrahedron;
+}
+
+// visit(u, v, squared length) for every edge, u < v.
+template <typename Visit>
+void visit_edges(const Mesh& mesh, const Visit& visit) {
+  for (uint32_t u = 0; u < mesh.slots(); ++u) {
+    for (uint32_t k = 0; k < mesh.valence(u); ++k) {
+      const uint32_t v = mesh.neighbor(u, k);
+      if (u < v) visit(u, v, squared_distance(mesh.at(u), mesh.at(v)));
+    }
+  }
+}
+
+struct LongEdge {
+  float squared;
+  uint32_t u, v;
+  // The longest on top of a queue, ties by ids.
+  friend bool operator<(const LongEdge& l, const LongEdge& r) {
+    return std::tie(l.squared, r.u, r.v) < std::tie(r.squared, l.u, l.v);
+  }
+};
+
+Status divide_long_edges(Mesh& mesh, OperationCounts& counts) {
+  const auto delta = static_cast<float>(mesh.delta);
+  const float longest = kMaxEdge * kMaxEdge * delta * delta;
+  // An edge in the queue stays what it is until its turn: only edges taken from it go.
+  std::priority_queue<LongEdge> queue;
+  const auto consider = [&](uint32_t u, uint32_t v, float squared) {
+    if (squared >= longest) queue.push({squared, std::min(u, v), std::max(u, v)});
+  };
+  visit_edges(mesh, consider);
+  while (!queue.empty()) {
+    const LongEdge top = queue.top();
+    queue.pop();
+    const Edge e = edge_between(mesh, top.u, top.v);
+    if (mesh.slots() >= kMaxMeshVertices) {
+      return {ErrorCode::kOutOfMemory, "the surface needs more than " +
+                                           std::to_string(kMaxMeshVertices) +
+                                           " vertices at this resolution"};
+    }
+    if (std::max(mesh.valence(e.a), mesh.valence(e.b)) >= kMaxValence) {
+      return {ErrorCode::kInvalidData, "too many edges at one vertex to divide those around it"};
+    }
+    const uint32_t w = create_on_edge(mesh, e);
+    ++counts.creation;
+    for (const uint32_t x : {e.u, e.a, e.v, e.b}) {
+      consider(w, x, squared_distance(mesh.at(w), mesh.at(x)));
+    }
+  }
+  return {};
+}
+
+double longest_edge(const Mesh& mesh) {
+  float longest = 0;
+  visit_edges(mesh,
+              [&](uint32_t, uint32_t, float squared) { longest = std::max(longest, squared); });
+  return std::sqrt(static_cast<double>(longest));
+}
+
+void settle(Mesh& mesh, Resolution& resolution, OperationCounts& counts) {
+  mesh.renumber(morton_order(mesh));
+  resolution.restart();
+  for (int pass = 0; pass < kConformPasses; ++pass) {
+    const int64_t before = applied(counts);
+    resolution.take_due(true);
+    resolution.run(kIteration, counts);
+    if (applied(counts) == before) break;
+  }
+}
+
+void put_at_rest(Mesh& mesh) {
+  mesh.renumber(morton_order(mesh));
+  for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    mesh.wake(v);
+    mesh.path[v] = 0;
+    mesh.operations[v] = 0;
+    mesh.cut_id[v] = 0;
+  }
+}
+
+}  // namespace
+
+Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget simd,
+               OperationCounts& counts) {
+  mesh.delta = delta;
+  const uint32_t given = mesh.slots();
+  if (Status s = divide_long_edges(mesh, counts); !s.ok()) return s;
+  if (mesh.slots() != given && !meeting_faces(mesh, schedule).empty()) {
+    return {ErrorCode::kInvalidData,
+            "the surface has faces too thin to be divided in single precision"};
+  }
+  Resolution resolution(mesh, schedule, simd);
+  // Just within (2).
+  constexpr double kRoom = 1.01;
+  for (double step = longest_edge(mesh) / static_cast<double>(kMaxEdge) * kRoom; step < delta;
+       step *= kRefinement) {
+    mesh.delta = step;
+    settle(mesh, resolution, counts);
+    if (mesh.vertex_count() == 0) break;
+  }
+  mesh.delta = delta;
+  settle(mesh, resolution, counts);
+  put_at_rest(mesh);
+  if (mesh.vertex_count() == 0) {
+    return {ErrorCode::kInvalidData,
+            "nothing is left of the surface at this resolution: it is too small or too thin"};
+  }
+  assert(broken_invariant(mesh).empty());
+  if (const auto meeting = meeting_faces(mesh, schedule); !meeting.empty()) {
+    const Vec3 p = mesh.at(meeting[0][0]);
+    char line[160];
+    std::snprintf(line, sizeof line,
+                  "the surface meets itself after it was brought to delta %.6g: %zu faces, the "
+                  "first at (%.6g, %.6g, %.6g)",
+                  delta, meeting.size(), static_cast<double>(p.x), static_cast<double>(p.y),
+                  static_cast<double>(p.z));
+    return {ErrorCode::kInternal, line};
+  }
+  return {};
+}
+
+}  // namespace plc
