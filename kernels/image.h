@@ -1,6 +1,8 @@
-// One image of the pyramid as the sampling kernels read it.
+// One image of the pyramid, and its gradient, as the sampling kernels read them.
 #pragma once
 #include <cstdint>
+
+#include "kernels/ring.h"
 
 namespace plc {
 
@@ -10,6 +12,14 @@ namespace plc {
 // NaN counts as the image's lower border.
 struct ImageView {
   const float* data = nullptr;
+  int32_t dims[3] = {0, 0, 0};  // each >= 2; the product is below 2^31
+  float scale[3] = {1, 1, 1};
+  float offset[3] = {0, 0, 0};
+};
+
+// A vector per voxel, by the same rules of place; w is not read.
+struct GradientView {
+  const Packed* data = nullptr;
   int32_t dims[3] = {0, 0, 0};  // each >= 2; the product is below 2^31
   float scale[3] = {1, 1, 1};
   float offset[3] = {0, 0, 0};

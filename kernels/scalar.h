@@ -2,6 +2,7 @@
 // They are what SimdTarget::kScalar runs, what the tests compare with, and the contract of bits in
 // readable form; the kernels' headers say what each function does.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -9,6 +10,7 @@
 #include "kernels/integrate.h"
 #include "kernels/ring.h"
 #include "kernels/separable.h"
+#include "kernels/sobel.h"
 #include "kernels/voxels.h"
 
 namespace plc::kernels::scalar {
@@ -53,6 +55,12 @@ void iso_force(const ImageView& image, const Packed* position, const float* nx, 
                const float* nz, float coefficient, float iso, uint32_t begin, uint32_t end,
                float* fx, float* fy, float* fz);
 
+// gradient_force.h
+void gradient_force(const GradientView& gradient, const Packed* position, const float* nx,
+                    const float* ny, const float* nz, float along_normal, float along_tangent,
+                    const std::array<float, 3>& map, uint32_t begin, uint32_t end, float* fx,
+                    float* fy, float* fz);
+
 // integrate.h
 void rk4_stage(int stage, const Rk4Coefficients& coefficients, const Rk4Streams& streams,
                uint32_t begin, uint32_t end);
@@ -76,5 +84,21 @@ void reduce_y(const TapsView& taps, size_t begin, size_t end, const float* in, s
               size_t width, float* out, size_t out_stride);
 void reduce_z(const float* weights, int32_t taps, const float* const* planes, size_t count,
               float* out);
+
+// sobel.h. The first two are the halves of the third, for columns begin .. end-1: the vector kernel
+// calls them for the columns that fill no vector.
+void sobel_columns(const float* const* rows, size_t begin, size_t end, const SobelColumns& to);
+void sobel_row(const SobelColumns& columns, size_t begin, size_t end,
+               const std::array<float, 3>& scale, float* gx, float* gy, float* gz);
+void sobel(const float* const* rows, size_t width, const std::array<float, 3>& scale,
+           float* scratch, float* gx, float* gy, float* gz);
+void bound_vectors(const float* gx, const float* gy, const float* gz, size_t count, float bound,
+                   Packed* vectors);
+void vector_norms(const float* gx, const float* gy, const float* gz, size_t count, float factor,
+                  float* norms);
+
+// weighted_rows.h
+void weighted_rows(const float* weights, size_t taps, const float* const* rows, size_t begin,
+                   size_t end, float* out);
 
 }  // namespace plc::kernels::scalar

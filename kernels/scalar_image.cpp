@@ -1,4 +1,4 @@
-// Scalar twins of kernels/image_force.h, voxels.h and separable.h.
+// Scalar twins of kernels/image_force.h, gradient_force.h, voxels.h and separable.h.
 #include <cmath>
 #include <limits>
 
@@ -25,22 +25,46 @@ Cell locate(float p, float scale, float offset, int32_t dim) {
   return {index, c - static_cast<float>(index)};
 }
 
-float lerp(float a, float b, float t) {
-  return a + (b - a) * t;
-}
+// The first voxel of a position's cell, the steps to the next row and plane, the place in the cell.
+struct Place {
+  int32_t cell, row, plane;
+  float x, y, z;
+};
 
-float sample(const ImageView& image, const Packed& p) {
+template <typename View>
+Place locate(const View& image, const Packed& p) {
   const Cell x = locate(p.x, image.scale[0], image.offset[0], image.dims[0]);
   const Cell y = locate(p.y, image.scale[1], image.offset[1], image.dims[1]);
   const Cell z = locate(p.z, image.scale[2], image.offset[2], image.dims[2]);
   const int32_t row = image.dims[0];
   const int32_t plane = image.dims[0] * image.dims[1];
-  const float* v = image.data + (x.index + y.index * row + z.index * plane);
-  const float y0z0 = lerp(v[0], v[1], x.fraction);
-  const float y1z0 = lerp(v[row], v[row + 1], x.fraction);
-  const float y0z1 = lerp(v[plane], v[plane + 1], x.fraction);
-  const float y1z1 = lerp(v[plane + row], v[plane + row + 1], x.fraction);
-  return lerp(lerp(y0z0, y1z0, y.fraction), lerp(y0z1, y1z1, y.fraction), z.fraction);
+  const int32_t cell = x.index + y.index * row + z.index * plane;
+  return {cell, row, plane, x.fraction, y.fraction, z.fraction};
+}
+
+float lerp(float a, float b, float t) {
+  return a + (b - a) * t;
+}
+
+// value(i) at the eight voxels of the cell: along x, then y, then z.
+template <typename Value>
+float trilinear(const Place& at, const Value& value) {
+  const auto along_x = [&](int32_t voxel) { return lerp(value(voxel), value(voxel + 1), at.x); };
+  const auto in_plane = [&](int32_t voxel) {
+    return lerp(along_x(voxel), along_x(voxel + at.row), at.y);
+  };
+  return lerp(in_plane(at.cell), in_plane(at.cell + at.plane), at.z);
+}
+
+float sample(const ImageView& image, const Packed& p) {
+  return trilinear(locate(image, p), [&](int32_t voxel) { return image.data[voxel]; });
+}
+
+Triple sample(const GradientView& gradient, const Packed& p) {
+  const Place at = locate(gradient, p);
+  return {trilinear(at, [&](int32_t voxel) { return gradient.data[voxel].x; }),
+          trilinear(at, [&](int32_t voxel) { return gradient.data[voxel].y; }),
+          trilinear(at, [&](int32_t voxel) { return gradient.data[voxel].z; })};
 }
 
 template <typename T>
@@ -96,6 +120,23 @@ void iso_force(const ImageView& image, const Packed* position, const float* nx, 
     fx[i] += push * nx[i];
     fy[i] += push * ny[i];
     fz[i] += push * nz[i];
+  }
+}
+
+void gradient_force(const GradientView& gradient, const Packed* position, const float* nx,
+                    const float* ny, const float* nz, float along_normal, float along_tangent,
+                    const std::array<float, 3>& map, uint32_t begin, uint32_t end, float* fx,
+                    float* fy, float* fz) {
+  for (uint32_t i = begin; i < end; ++i) {
+    const Triple g = sample(gradient, position[i]);
+    const float along = g.x * nx[i] + g.y * ny[i] + g.z * nz[i];
+    const auto pull = [&](float own, float normal) {
+      const float normal_part = normal * along;
+      return normal_part * along_normal + (own - normal_part) * along_tangent;
+    };
+    fx[i] += pull(g.x, nx[i]) * map[0];
+    fy[i] += pull(g.y, ny[i]) * map[1];
+    fz[i] += pull(g.z, nz[i]) * map[2];
   }
 }
 

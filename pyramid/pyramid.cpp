@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <new>
 #include <string>
 #include <utility>
 
 #include "pyramid/base_image.h"
+#include "pyramid/check_volume.h"
 #include "pyramid/reduction.h"
 #include "pyramid/taps.h"
 
@@ -16,52 +16,14 @@ namespace plc {
 
 namespace {
 
-constexpr int64_t kMaxVoxels = int64_t{1} << 31;  // voxel indices are 32-bit in the kernels
-constexpr int64_t kMinDim = 2;                    // a cell of the interpolation needs two voxels
-
-std::string number(double value, int digits = 6) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
-}
-
-std::string voxels_text(const std::array<int64_t, 3>& dims) {
-  return std::to_string(dims[0]) + " x " + std::to_string(dims[1]) + " x " +
-         std::to_string(dims[2]) + " voxels";
-}
-
 int64_t reduced(int64_t dim, double reduction) {
   return static_cast<int64_t>(std::floor(static_cast<double>(dim) / reduction));
-}
-
-Status check_volume(const VolumeView& volume) {
-  if (volume.voxels == nullptr) {
-    return {ErrorCode::kInvalidArgument, "volume: voxels is null, expected the image's data"};
-  }
-  if (voxel_size(volume.type) == 0) {
-    return {
-        ErrorCode::kInvalidArgument,
-        "volume: voxel type " + std::to_string(static_cast<int>(volume.type)) + " is not known"};
-  }
-  for (const int64_t dim : volume.dims) {
-    if (dim >= kMinDim && dim < kMaxVoxels) continue;
-    return {ErrorCode::kInvalidData, "image of " + voxels_text(volume.dims) +
-                                         ": expected at least 2 on every axis, fewer than 2^31 in "
-                                         "all"};
-  }
-  for (const double spacing : volume.spacing) {
-    if (std::isfinite(spacing) && spacing > 0.0) continue;
-    return {ErrorCode::kInvalidData,
-            "spacing " + number(volume.spacing[0]) + " x " + number(volume.spacing[1]) + " x " +
-                number(volume.spacing[2]) + " mm: expected finite sizes greater than 0"};
-  }
-  return {};
 }
 
 Status check_spec(const PyramidSpec& spec) {
   if (!(spec.reduction > 1.0 && spec.reduction <= 2.0)) {
     return {ErrorCode::kInvalidArgument,
-            "reduction " + number(spec.reduction) + ": expected more than 1 and at most 2"};
+            "reduction " + number_text(spec.reduction) + ": expected more than 1 and at most 2"};
   }
   if (spec.levels < 0) {
     return {ErrorCode::kInvalidArgument,
@@ -70,12 +32,12 @@ Status check_spec(const PyramidSpec& spec) {
   const double width = spec.window_high - spec.window_low;
   if (!(width > 0.0) || !std::isfinite(width) || !std::isfinite(1.0 / width)) {
     return {ErrorCode::kInvalidArgument,
-            "window " + number(spec.window_low) + " .. " + number(spec.window_high) +
+            "window " + number_text(spec.window_low) + " .. " + number_text(spec.window_high) +
                 ": expected finite values, the first below the second"};
   }
   if (!std::isfinite(spec.pad_value)) {
     return {ErrorCode::kInvalidArgument,
-            "pad value " + number(spec.pad_value) + ": expected a finite value"};
+            "pad value " + number_text(spec.pad_value) + ": expected a finite value"};
   }
   if (spec.pad_voxels < 0) {
     return {ErrorCode::kInvalidArgument,
@@ -95,7 +57,7 @@ Status check_size(const std::array<int64_t, 3>& padded, const PyramidSpec& spec)
   if (spec.levels > most) {
     return {ErrorCode::kInvalidArgument, "levels " + std::to_string(spec.levels) +
                                              ": too deep for an image of " + voxels_text(padded) +
-                                             " at reduction " + number(spec.reduction, 3) +
+                                             " at reduction " + number_text(spec.reduction, 3) +
                                              "; at most " + std::to_string(most)};
   }
   return {};

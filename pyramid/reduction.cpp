@@ -1,11 +1,10 @@
 #include "pyramid/reduction.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
-#include <new>
 
 #include "pyramid/buffer.h"
+#include "pyramid/guarded_run.h"
 
 namespace plc {
 
@@ -101,19 +100,13 @@ bool reduce_image(const float* in, const std::array<int64_t, 3>& in_dims,
   r.tile_rows = std::clamp(kWindowBytes / row_bytes, kMinTileRows, r.out_dims[1]);
   const size_t tiles_y = divide_up(r.out_dims[1], r.tile_rows);
   const size_t tiles_z = divide_up(r.out_dims[2], kTilePlanes);
-  std::atomic<bool> out_of_memory{false};
-  executor.run(tiles_y * tiles_z, [&](size_t task) {
+  return run_guarded(executor, tiles_y * tiles_z, [&](size_t task) {
     const size_t row = task % tiles_y * r.tile_rows;
     const size_t plane = task / tiles_y * kTilePlanes;
     const Tile tile{row, std::min(row + r.tile_rows, r.out_dims[1]), plane,
                     std::min(plane + kTilePlanes, r.out_dims[2])};
-    try {
-      reduce_tile(r, tile);
-    } catch (const std::bad_alloc&) {
-      out_of_memory = true;
-    }
+    reduce_tile(r, tile);
   });
-  return !out_of_memory;
 }
 
 }  // namespace plc

@@ -1,0 +1,66 @@
+#include "pyramid/gradient.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <new>
+
+#include "kernels/sobel.h"
+#include "pyramid/check_volume.h"
+#include "pyramid/sobel_image.h"
+
+namespace plc {
+
+namespace {
+
+// Bounds and scales beyond these count as these, so that squares stay normal floats; no level of
+// values in [0,1] comes near.
+constexpr double kLeast = 1e-18;
+constexpr double kMost = 1e18;
+
+float within_floats(double value) {
+  return static_cast<float>(std::clamp(value, kLeast, kMost));
+}
+
+Status check_units(const std::array<double, 3>& voxel_length, double bound) {
+  if (!(std::isfinite(bound) && bound > 0.0)) {
+    return {ErrorCode::kInvalidArgument,
+            "gradient bound " + number_text(bound) + ": expected a finite value greater than 0"};
+  }
+  for (const double length : voxel_length) {
+    if (std::isfinite(length) && length > 0.0) continue;
+    return {ErrorCode::kInvalidArgument, "gradient: voxel of " + number_text(voxel_length[0]) +
+                                             " x " + number_text(voxel_length[1]) + " x " +
+                                             number_text(voxel_length[2]) +
+                                             " units: expected finite lengths greater than 0"};
+  }
+  return {};
+}
+
+}  // namespace
+
+Status build_gradient(const PyramidLevel& level, const std::array<double, 3>& voxel_length,
+                      double bound, const Executor& executor, SimdTarget simd,
+                      Buffer<Packed>& gradient) {
+  gradient.clear();
+  Status status = check_units(voxel_length, bound);
+  if (!status.ok()) return status;
+  std::array<float, 3> scale{};
+  for (size_t a = 0; a < 3; ++a) scale[a] = within_floats(1.0 / voxel_length[a]);
+  bool enough_memory = true;
+  try {
+    gradient.resize_uninitialized(level.values.size());
+    enough_memory = sobel_image(
+        level.values.data(), level.dims, scale, executor, simd, [&](const GradientRow& row) {
+          kernels::bound_vectors(simd, row.gx, row.gy, row.gz, row.width, within_floats(bound),
+                                 gradient.data() + row.first);
+        });
+  } catch (const std::bad_alloc&) {
+    enough_memory = false;
+  }
+  if (enough_memory) return {};
+  gradient.clear();
+  return {ErrorCode::kOutOfMemory, "gradient of " + voxels_text(level.dims) + ": out of memory"};
+}
+
+}  // namespace plc
