@@ -50,14 +50,14 @@ bool write_norms(const float* image, const VolumeView& volume, double width,
 // False, or std::bad_alloc, when memory ran out.
 bool build_norm(const VolumeView& volume, double sigma_mm, const Executor& executor,
                 SimdTarget simd, Buffer<float>& norm) {
-  // Relative to its range, a volume loses nothing of its contrast to floats.
-  const VoxelRange range = voxel_range(volume, executor, simd);
-  const double width = range.high - range.low;
-  const Window window{range.low, width > 0.0 ? 1.0 / width : 0.0};
   Buffer<float> other;
   const auto count = static_cast<size_t>(volume.dims[0] * volume.dims[1] * volume.dims[2]);
   norm.resize_uninitialized(count);
   other.resize_uninitialized(count);
+  // Relative to its range, a volume loses nothing of its contrast to floats.
+  const VoxelRange range = voxel_range(volume, executor, simd);
+  const double width = range.high - range.low;
+  const Window window{range.low, width > 0.0 ? 1.0 / width : 0.0};
   if (sigma_mm == 0.0) {
     make_base_image(volume, window, 0, range.low, executor, simd, other.data());
   } else {

@@ -43,8 +43,8 @@ void convolve_plane(const AxisKernel& x, const AxisKernel& y, SimdTarget simd, f
   Buffer<float> padded, along_x;
   padded.resize_uninitialized(m + 2 * x.radius());
   along_x.resize_uninitialized(m * n);
-  std::vector<const float*> rows;
-  for (size_t k = 0; k < x.weights.size(); ++k) rows.push_back(padded.data() + k);
+  std::vector<const float*> rows(x.weights.size());
+  for (size_t k = 0; k < rows.size(); ++k) rows[k] = padded.data() + k;
   for (size_t j = 0; j < n; ++j) {
     const float* row = plane + j * m;
     std::fill_n(padded.data(), x.radius(), row[0]);
@@ -76,6 +76,7 @@ std::vector<float> gaussian_weights(double sigma) {
     sum += samples.back();
   }
   std::vector<float> weights;
+  weights.reserve(samples.size());
   for (const double sample : samples) weights.push_back(static_cast<float>(sample / sum));
   return weights;
 }

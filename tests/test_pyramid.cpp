@@ -7,6 +7,7 @@
 
 #include "kernel_fixtures.h"
 #include "limited_memory.h"
+#include "reference_pyramid.h"
 
 namespace {
 
@@ -139,6 +140,37 @@ TEST_CASE("every level is the convolution (12) of the level below", "[pyramid]")
       CAPTURE(reduction, spacing[2]);
       const Pyramid pyramid = must_build(volume, spec, kSerial, plc::best_simd_target());
       for (size_t h = 0; h < 2; ++h) require_definition(pyramid.levels[h], pyramid.levels[h + 1]);
+    }
+  }
+}
+
+TEST_CASE("the pyramid is (10) to (12) from the volume up, also on odd sizes of flat voxels",
+          "[pyramid]") {
+  const Dims dims{13, 27, 9};
+  const std::array<double, 3> spacing{1.7, 0.4, 3.1};
+  const std::vector<uint8_t> voxels = make_voxels<uint8_t>(dims);
+  for (const double reduction : {1.25, kSqrt3, 2.0}) {
+    PyramidSpec spec;
+    spec.reduction = reduction;
+    spec.levels = plc::max_levels(dims, reduction);
+    spec.window_high = 200;
+    spec.pad_voxels = 0;
+    const Pyramid pyramid = must_build({VoxelType::kU8, voxels.data(), dims, spacing}, spec,
+                                       kSerial, plc::best_simd_target());
+    REQUIRE(spec.levels >= 1);
+    reference::Level expected{dims, {}};
+    for (const uint8_t v : voxels) expected.values.push_back(std::min(v / 200.0, 1.0));
+    std::array<double, 3> extent{};
+    for (size_t a = 0; a < 3; ++a) extent[a] = static_cast<double>(dims[a]) * spacing[a];
+    double unit = 0.4;
+    for (const PyramidLevel& level : pyramid.levels) {
+      CAPTURE(reduction, level.dims[0], level.dims[1], level.dims[2]);
+      REQUIRE(level.dims == expected.dims);
+      for (size_t i = 0; i < expected.values.size(); ++i) {
+        REQUIRE(double{level.values[i]} == Approx(expected.values[i]).margin(2e-6));
+      }
+      expected = reference::next_level(expected, extent, reduction, unit);
+      unit *= reduction;
     }
   }
 }
