@@ -122,10 +122,10 @@ TEST_CASE("a cube of few huge faces keeps its shape", "[conform]") {
 
 TEST_CASE("a long cylinder of needles is cut up and its needles merged", "[conform]") {
   Mesh mesh;
-  import(mesh, prism(48, 6, 200));
+  import(mesh, prism(24, 4, 80));
   conformed(mesh, 1);
   CHECK(samples::euler(mesh) == 2);
-  CHECK(samples::volume(mesh) == Approx(kPi * 36 * 200).epsilon(0.03));
+  CHECK(samples::volume(mesh) == Approx(kPi * 16 * 80).epsilon(0.04));
 }
 
 TEST_CASE("fine and coarse parts, cavities and handles conform together", "[conform]") {
@@ -151,8 +151,8 @@ TEST_CASE("what is within the constraints stays", "[conform]") {
 }
 
 TEST_CASE("iso-surfaces of noisy images conform", "[conform]") {
-  const Volume shape = samples::empty_volume({32, 32, 32});
-  Volume chain = samples::chain_potential(samples::empty_volume({48, 48, 48}));
+  const Volume shape = samples::empty_volume({18, 18, 18});
+  Volume chain = samples::chain_potential(samples::empty_volume({40, 40, 40}));
   samples::add_noise(chain, 0.2, 3);
   Volume ball = samples::sphere_potential(shape, 0.3);
   samples::add_noise(ball, 0.8, 5);
@@ -195,8 +195,19 @@ TEST_CASE("sheets so near that dividing them makes them meet are refused", "[con
   CHECK(status.message() == "the surface has faces too thin to be divided in single precision");
 }
 
+TEST_CASE("a surface that would need more vertices than there are ids is refused at once",
+          "[conform]") {
+  Mesh mesh;
+  import(mesh, samples::moved(samples::cube(), 0, 0, 0, 1e5));
+  OperationCounts counts;
+  const plc::Status status = try_conform(mesh, 0.5, counts);
+  CHECK(status.code() == plc::ErrorCode::kOutOfMemory);
+  CHECK_THAT(status.message(), Catch::Matchers::Contains("vertices at this resolution"));
+  CHECK(counts.creation == 0);
+}
+
 TEST_CASE("a surface conforms to the same bits with any number of threads", "[conform]") {
-  const Volume v = samples::noise(samples::empty_volume({28, 28, 28}), 5, 11);
+  const Volume v = samples::noise(samples::empty_volume({20, 20, 20}), 5, 11);
   std::vector<uint64_t> hashes;
   for (const int threads : {1, 2, 3}) {
     Mesh mesh;
