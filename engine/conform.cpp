@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdio>
 #include <queue>
 #include <string>
@@ -48,7 +49,25 @@ struct LongEdge {
   }
 };
 
+Status too_many_vertices() {
+  return {ErrorCode::kOutOfMemory, "the surface needs more than " +
+                                       std::to_string(kMaxMeshVertices) +
+                                       " vertices at this resolution"};
+}
+
+// At least so many: no face within (2) is larger than the equilateral one.
+double vertices_needed(const Mesh& mesh) {
+  const std::vector<uint32_t> abc = mesh.faces();
+  double area = 0;
+  for (size_t i = 0; i < abc.size(); i += 3) {
+    area += static_cast<double>(length(area_vector(mesh, abc[i], abc[i + 1], abc[i + 2]))) / 2;
+  }
+  const double edge = static_cast<double>(kMaxEdge) * mesh.delta;
+  return area / (std::sqrt(3.0) / 4 * edge * edge) / 2;
+}
+
 Status divide_long_edges(Mesh& mesh, OperationCounts& counts) {
+  if (vertices_needed(mesh) > static_cast<double>(kMaxMeshVertices)) return too_many_vertices();
   const auto delta = static_cast<float>(mesh.delta);
   const float longest = kMaxEdge * kMaxEdge * delta * delta;
   // An edge in the queue stays what it is until its turn: only edges taken from it go.
@@ -61,11 +80,7 @@ Status divide_long_edges(Mesh& mesh, OperationCounts& counts) {
     const LongEdge top = queue.top();
     queue.pop();
     const Edge e = edge_between(mesh, top.u, top.v);
-    if (mesh.slots() >= kMaxMeshVertices) {
-      return {ErrorCode::kOutOfMemory, "the surface needs more than " +
-                                           std::to_string(kMaxMeshVertices) +
-                                           " vertices at this resolution"};
-    }
+    if (mesh.slots() >= kMaxMeshVertices) return too_many_vertices();
     if (std::max(mesh.valence(e.a), mesh.valence(e.b)) >= kMaxValence) {
       return {ErrorCode::kInvalidData, "too many edges at one vertex to divide those around it"};
     }
@@ -100,6 +115,8 @@ void put_at_rest(Mesh& mesh) {
   mesh.renumber(morton_order(mesh));
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     mesh.wake(v);
+    mesh.velocity.set(v, {});
+    mesh.risk[v] = 1;
     mesh.path[v] = 0;
     mesh.operations[v] = 0;
     mesh.cut_id[v] = 0;
@@ -120,11 +137,11 @@ Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget si
   Resolution resolution(mesh, schedule, simd);
   // Just within (2).
   constexpr double kRoom = 1.01;
-  for (double step = longest_edge(mesh) / static_cast<double>(kMaxEdge) * kRoom; step < delta;
-       step *= kRefinement) {
+  double step = longest_edge(mesh) / static_cast<double>(kMaxEdge) * kRoom;
+  while (step < delta && mesh.vertex_count() != 0) {
     mesh.delta = step;
     settle(mesh, resolution, counts);
-    if (mesh.vertex_count() == 0) break;
+    step *= kRefinement;
   }
   mesh.delta = delta;
   settle(mesh, resolution, counts);

@@ -23,7 +23,7 @@ inline constexpr double kIsoMargin = 0.1;
 //
 // Positions are of mesh space: voxel coordinate c = scale p + offset, scale > 0. Each image.dims >=
 // 1. Ids in scan order of the voxels, 7 edges to a voxel; memory O(vertices + a few slices per
-// thread); the same bits for any executor. About 6 vertices per voxel that the surface passes by.
+// thread); the same bits for any executor. About 4.5 vertices per square voxel of surface.
 //
 // Errors, the mesh unchanged: kInvalidData when all voxels are outside, kOutOfMemory for more
 // vertices than ids have room for; throws std::bad_alloc.

@@ -16,8 +16,8 @@ inline constexpr double kImportReach = 16777216;
 // from outside. Replaces what is in the mesh, but for delta, which is left to the caller as are the
 // constraints for it (conform.h). Vertices without a face are dropped, the others keep their order.
 //
-// kInvalidData, the mesh unchanged, for all that is not a valid surface (mesh_check.h) with two
-// faces or more: out of range, open, not manifold, inconsistently oriented, inside out (walls of
+// kInvalidData, the mesh unchanged, for all that is not a valid surface (mesh_check.h): no
+// faces, out of range, open, not manifold, inconsistently oriented, inside out (walls of
 // cavities: outside out), faces of zero area, self-intersecting - or become so by the rounding of
 // coordinates to float - or with more vertices or edges at a vertex than ids have room for. One
 // line that says what is wrong, how often and where first, in the ids and coordinates given.

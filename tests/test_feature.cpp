@@ -152,8 +152,8 @@ TEST_CASE("the feature image is the norm of the Sobel gradient of the Gaussian i
 TEST_CASE("contrast survives a value that is large against it", "[pyramid]") {
   // Steps of 1 on a billion, which a float does not hold.
   const Dims dims{8, 4, 4};
-  std::vector<int32_t> voxels;
-  for (int32_t i = 0; i < 8 * 16; ++i) voxels.push_back(1000000000 + i % 8);
+  std::vector<int32_t> voxels(8 * 16);
+  for (size_t i = 0; i < voxels.size(); ++i) voxels[i] = 1000000000 + static_cast<int32_t>(i % 8);
   const std::vector<float> got = must_build({VoxelType::kI32, voxels.data(), dims, {0.5, 1, 1}}, 0,
                                             kSerial, plc::best_simd_target());
   for (size_t i = 0; i < got.size(); ++i) {
@@ -161,17 +161,17 @@ TEST_CASE("contrast survives a value that is large against it", "[pyramid]") {
   }
 }
 
-TEST_CASE("the norm at a smoothed step is the Gaussian's peak, wherever voxels are coarse",
-          "[pyramid]") {
+TEST_CASE("the norm at a smoothed step is the Gaussian's peak, whatever the voxels", "[pyramid]") {
   // A step of 100 across z, whose voxels are 0.5 mm; sigma 2 mm: 100 / (2 sqrt(2 pi)) per mm.
   const Dims dims{5, 4, 48};
-  std::vector<int16_t> voxels;
-  for (int i = 0; i < 5 * 4 * 48; ++i) voxels.push_back(i / 20 < 24 ? -50 : 50);
+  std::vector<int16_t> voxels(5 * 4 * 48, 50);
+  std::fill_n(voxels.begin(), 5 * 4 * 24, int16_t{-50});
   const std::vector<float> got = must_build({VoxelType::kI16, voxels.data(), dims, {2, 3, 0.5}},
                                             2.0, kSerial, plc::best_simd_target());
   const double peak = 100 / (2.0 * std::sqrt(2 * 3.141592653589793));
   for (size_t i = 0; i < got.size(); ++i) {
-    const double from_step = (static_cast<double>(i / 20) - 23.5) * 0.5;
+    const size_t plane = i / 20;
+    const double from_step = (static_cast<double>(plane) - 23.5) * 0.5;
     const double expected = peak * std::exp(-from_step * from_step / 8);
     CAPTURE(i);
     REQUIRE(double{got[i]} == Approx(expected).margin(0.02 * peak));

@@ -91,9 +91,10 @@ TEST_CASE("the Sobel gradient of a linear ramp is its slope, half of it at a row
   const size_t width = 21;
   Rows rows(width, 1);
   for (size_t r = 0; r < 9; ++r) {
+    const size_t y = r % 3, z = r / 3;
     for (size_t x = 0; x < width; ++x) {
-      rows.values[r][x] = 2.0F * static_cast<float>(x) + 3.0F * static_cast<float>(r % 3) -
-                          0.5F * static_cast<float>(r / 3);
+      rows.values[r][x] = 2.0F * static_cast<float>(x) + 3.0F * static_cast<float>(y) -
+                          0.5F * static_cast<float>(z);
     }
   }
   std::vector<float> scratch(kernels::sobel_scratch(width));

@@ -15,6 +15,7 @@ TEST_CASE("weighted rows are summed in order on any part of them", "[kernels]") 
   for (const size_t taps : {1, 2, 7, 25}) {
     std::vector<std::vector<float>> values;
     std::vector<const float*> rows;
+    rows.reserve(taps);
     for (uint32_t k = 0; k < taps; ++k) values.push_back(random_floats(width, -2, 2, 10 + k));
     for (const std::vector<float>& row : values) rows.push_back(row.data());
     const std::vector<float> weights = random_floats(taps, -1, 1, 3);
