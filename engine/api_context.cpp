@@ -126,7 +126,11 @@ void plc_parameters_defaults(plc_parameters* p) {
   p->spring = 0;
   p->rest_length = PLC_REST_MEAN;
   p->rest_length_value = 1.5;
+  p->force = PLC_FORCE_ISO;
   p->attraction = 1;
+  p->gradient = 0.5;
+  p->gradient_tangent = 0;
+  p->gradient_bound = 0.1;
   p->mass = 1;
   p->damping = 0.5;
   p->time_step = 1;
@@ -135,6 +139,13 @@ void plc_parameters_defaults(plc_parameters* p) {
   p->anisotropy = PLC_ANISOTROPY_VOXEL;
   p->epsilon = 5e-6;
   p->max_iterations = 500;
+  p->late_bubbles = 1;
+}
+
+void plc_extras_defaults(plc_extras* extras) {
+  *extras = {};
+  extras->struct_size = sizeof *extras;
+  extras->space = PLC_SPACE_LPS;
 }
 
 }  // extern "C"

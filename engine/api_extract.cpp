@@ -1,10 +1,14 @@
 // The C API: extraction of a surface from an image.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
-#include "engine/constants.h"
+#include "engine/api_extras.h"
+#include "engine/api_force.h"
 #include "engine/handles.h"
 #include "engine/parameters.h"
+#include "pyramid/feature.h"
+#include "pyramid/mask.h"
 
 namespace plc {
 
@@ -39,51 +43,93 @@ Status check_image(const plc_image& image) {
   return {};
 }
 
+VolumeView view_of(const plc_image& image) {
+  VolumeView volume;
+  volume.type = static_cast<VoxelType>(image.type);
+  volume.voxels = image.voxels;
+  for (size_t i = 0; i < 3; ++i) {
+    volume.dims[i] = image.dims[i];
+    volume.spacing[i] = image.spacing[i];
+  }
+  return volume;
+}
+
 class Extraction {
  public:
-  Extraction(plc_context& context, const plc_image& image, const plc_parameters& parameters)
-      : context_(context), surface_(std::make_unique<plc_surface>()) {
+  Extraction(plc_context& context, const plc_image& image, const plc_parameters& parameters,
+             const plc_extras& extras)
+      : context_(context), extras_(extras), surface_(std::make_unique<plc_surface>()) {
     surface_->parameters = parameters;
-    volume_.type = static_cast<VoxelType>(image.type);
-    volume_.voxels = image.voxels;
-    for (size_t i = 0; i < 3; ++i) {
-      volume_.dims[i] = image.dims[i];
-      volume_.spacing[i] = image.spacing[i];
-      surface_->spacing[i] = image.spacing[i];
-      surface_->origin[i] = image.origin[i];
-    }
-    std::copy(image.direction, image.direction + 9, surface_->direction.begin());
+    volume_ = view_of(image);
+    Frame& frame = surface_->frame;
+    frame.spacing = volume_.spacing;
+    std::copy(image.origin, image.origin + 3, frame.origin.begin());
+    std::copy(image.direction, image.direction + 9, frame.direction.begin());
   }
 
-  Status run(plc_progress_fn progress, void* user) {
+  Status run() {
     if (Status s = build(); !s.ok()) return s;
     const double start = now();
-    const auto forward = [&](const RecoveryProgress& p) {
-      if (progress == nullptr) return true;
-      const plc_progress out{sizeof(plc_progress), p.level,  p.levels,   p.iteration,
-                             p.vertices,           p.energy, p.fraction, now() - start};
-      return progress(&out, user) == 0;
-    };
-    surface_->space = spec_.space;
-    Status s = pyramidal_recover_shape(pyramid_, spec_, context_.schedule, context_.simd, forward,
+    RecoveryHooks hooks;
+    if (extras_.progress != nullptr) {
+      hooks.progress = [&](const RecoveryProgress& p) {
+        const plc_progress out{sizeof(plc_progress), p.level,  p.levels, p.iteration,
+                               p.vertices,           p.energy, p.speed,  p.fraction,
+                               now() - start};
+        return extras_.progress(&out, extras_.progress_user) == 0;
+      };
+    }
+    if (extras_.level != nullptr) {
+      hooks.level = [&](const LevelRecord&) { return ask_user(); };
+    }
+    Status s = pyramidal_recover_shape(pyramid_, spec_, context_.schedule, context_.simd, hooks,
                                        surface_->mesh, surface_->records);
     surface_->seconds_evolution = now() - start;
+    if (s.ok()) surface_->space = space_of_last_level();
     return s;
   }
 
   plc_surface* release() { return surface_.release(); }
 
  private:
+  MeshSpace space_of_last_level() const {
+    return mesh_space(pyramid_, surface_->records.back().level, spec_.anisotropy);
+  }
+
+  LevelVerdict ask_user() {
+    surface_->space = space_of_last_level();
+    plc_level_report report{};
+    report.struct_size = sizeof report;
+    plc_surface_level(surface_.get(), plc_surface_level_count(surface_.get()) - 1, &report);
+    switch (extras_.level(&report, surface_.get(), extras_.level_user)) {
+      case PLC_VERDICT_MORE:
+        return LevelVerdict::kMore;
+      case PLC_VERDICT_STOP:
+        return LevelVerdict::kStop;
+      default:
+        return LevelVerdict::kAccept;
+    }
+  }
+
   // Everything up to the evolution.
   Status build() {
     const double start = now();
     plc_parameters& p = surface_->parameters;
+    Buffer<float> feature;
+    if (p.feature == PLC_FEATURE_GRADIENT_NORM) {
+      if (Status s =
+              gradient_norm(volume_, p.feature_sigma, context_.schedule, context_.simd, feature);
+          !s.ok()) {
+        return s;
+      }
+      volume_.type = VoxelType::kF32;
+      volume_.voxels = feature.data();
+    }
     surface_->range = voxel_range(volume_, context_.schedule, context_.simd);
     if (surface_->range.not_finite > 0) {
       return {ErrorCode::kInvalidData, "image: " + std::to_string(surface_->range.not_finite) +
                                            " voxels are NaN or infinite"};
     }
-    const bool above = p.inside_below == 0;
     double background = 0;
     if (Status s = derive_parameters(volume_, surface_->range, context_.schedule, p, background);
         !s.ok()) {
@@ -94,21 +140,46 @@ class Extraction {
         !s.ok()) {
       return s;
     }
-    spec_ = recovery_spec(p, volume_.spacing);
-    choose_isos(above, background);
+    spec_ = recovery_spec(p);
+    take_extras(extras_, surface_->frame, spec_);
+    spec_.force = level_force(extras_, surface_->frame, context_.schedule);
+    if (Status s = build_mask_pyramid(); !s.ok()) return s;
+    choose_isos(background);
     surface_->seconds_pyramid = now() - start;
     return {};
   }
 
-  void choose_isos(bool above, double background) {
+  // 1 where the mask is not 0.
+  Status build_mask_pyramid() {
+    const plc_parameters& p = surface_->parameters;
+    if (p.init != PLC_INIT_MASK) return {};
+    Buffer<uint8_t> object;
+    if (!set_voxels(view_of(*extras_.mask), context_.schedule, object)) {
+      return {ErrorCode::kInvalidData, "mask: every voxel is 0"};
+    }
+    VolumeView volume = view_of(*extras_.mask);
+    volume.type = VoxelType::kU8;
+    volume.voxels = object.data();
+    volume.spacing = volume_.spacing;
+    PyramidSpec spec = pyramid_spec(p);
+    spec.window_low = 0;
+    spec.window_high = 1;
+    spec.pad_value = 0;
+    return build_pyramid(volume, spec, context_.schedule, context_.simd, spec_.start.mask);
+  }
+
+  void choose_isos(double background) {
     plc_parameters& p = surface_->parameters;
-    if (p.level_iso_count == 0) {
+    const bool above = p.inside_below == 0;
+    if (std::isnan(p.iso)) {
+      spec_.isos.assign(pyramid_.levels.size(), NAN);
+    } else if (p.level_iso_count == 0) {
       spec_.isos = covering_isos(pyramid_, normalised(p, p.iso), above,
                                  level_iso_bound(p, background), context_.schedule, context_.simd);
     } else {
       for (int h = 0; h <= p.levels; ++h) spec_.isos.push_back(normalised(p, p.level_iso[h]));
     }
-    p.level_iso_count = p.levels + 1;
+    p.level_iso_count = std::isnan(p.iso) ? 0 : p.levels + 1;
     for (size_t h = 0; h < spec_.isos.size(); ++h) {
       p.level_iso[h] = denormalised(p, spec_.isos[h]);
     }
@@ -120,6 +191,7 @@ class Extraction {
   }
 
   plc_context& context_;
+  const plc_extras& extras_;
   std::unique_ptr<plc_surface> surface_;
   VolumeView volume_;
   Pyramid pyramid_;
@@ -131,8 +203,8 @@ class Extraction {
 }  // namespace plc
 
 extern "C" plc_status plc_extract(plc_context* context, const plc_image* image,
-                                  const plc_parameters* parameters, plc_progress_fn progress,
-                                  void* user, plc_surface** surface) {
+                                  const plc_parameters* parameters, const plc_extras* extras,
+                                  plc_surface** surface) {
   using plc::ErrorCode;
   using plc::Status;
   if (context == nullptr) return PLC_INVALID_ARGUMENT;
@@ -141,13 +213,18 @@ extern "C" plc_status plc_extract(plc_context* context, const plc_image* image,
       return {ErrorCode::kInvalidArgument, "image, parameters, surface: must not be NULL"};
     }
     *surface = nullptr;
-    if (image->struct_size != sizeof *image || parameters->struct_size != sizeof *parameters) {
+    plc_extras none;
+    plc_extras_defaults(&none);
+    const plc_extras& used = extras == nullptr ? none : *extras;
+    if (image->struct_size != sizeof *image || parameters->struct_size != sizeof *parameters ||
+        used.struct_size != sizeof used) {
       return {ErrorCode::kInvalidArgument, "struct_size is not that of this version"};
     }
     if (Status s = plc::check_image(*image); !s.ok()) return s;
     if (Status s = plc::check_parameters(*parameters); !s.ok()) return s;
-    plc::Extraction extraction(*context, *image, *parameters);
-    if (Status s = extraction.run(progress, user); !s.ok()) return s;
+    if (Status s = plc::check_extras(used, *parameters, *image); !s.ok()) return s;
+    plc::Extraction extraction(*context, *image, *parameters, used);
+    if (Status s = extraction.run(); !s.ok()) return s;
     *surface = extraction.release();
     return {};
   });

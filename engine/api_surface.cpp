@@ -7,36 +7,11 @@
 
 namespace {
 
-// Mesh space to one of the spaces of the API: p -> m p + t.
-struct Affine {
-  double m[9];
-  double t[3];
-};
-
-Affine affine_of(const plc_surface& surface, plc_space space) {
-  Affine a{};
-  for (size_t axis = 0; axis < 3; ++axis) {
-    const double voxels = 1 / surface.space.step[axis];
-    if (space == PLC_SPACE_VOXEL) {
-      a.m[4 * axis] = voxels;
-      continue;
-    }
-    for (size_t i = 0; i < 3; ++i) {
-      // RAS is LPS with x and y turned round.
-      const double sign = space == PLC_SPACE_RAS && i < 2 ? -1 : 1;
-      a.m[3 * i + axis] = sign * surface.direction[3 * i + axis] * surface.spacing[axis] * voxels;
-      a.t[i] = sign * surface.origin[i];
-    }
-  }
+// Mesh space to one of the spaces of the API.
+plc::Affine affine_of(const plc_surface& surface, plc_space space) {
+  plc::Affine a = surface.frame.to(space);
+  for (size_t i = 0; i < 9; ++i) a.m[i] /= surface.space.step[i % 3];
   return a;
-}
-
-// Turns a mesh inside out: the winding of faces is to be reversed.
-bool mirrors(const Affine& a) {
-  const double* m = a.m;
-  return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
-             m[2] * (m[3] * m[7] - m[4] * m[6]) <
-         0;
 }
 
 }  // namespace
@@ -59,20 +34,18 @@ int64_t plc_surface_face_count(const plc_surface* surface) {
 }
 
 void plc_surface_positions(const plc_surface* surface, plc_space space, float* xyz) {
-  const Affine a = affine_of(*surface, space);
+  const plc::Affine a = affine_of(*surface, space);
   for (uint32_t v = 0; v < surface->mesh.slots(); ++v) {
     const plc::Packed& p = surface->mesh.packed[v];
-    for (int i = 0; i < 3; ++i) {
-      *xyz++ = static_cast<float>(a.m[3 * i] * static_cast<double>(p.x) +
-                                  a.m[3 * i + 1] * static_cast<double>(p.y) +
-                                  a.m[3 * i + 2] * static_cast<double>(p.z) + a.t[i]);
-    }
+    const auto at =
+        a.point({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+    for (const double x : at) *xyz++ = static_cast<float>(x);
   }
 }
 
 void plc_surface_faces(const plc_surface* surface, plc_space space, uint32_t* abc) {
   const std::vector<uint32_t> faces = surface->mesh.faces();
-  const bool mirrored = mirrors(affine_of(*surface, space));
+  const bool mirrored = affine_of(*surface, space).mirrors();
   for (size_t i = 0; i < faces.size(); i += 3) {
     *abc++ = faces[i];
     *abc++ = faces[mirrored ? i + 2 : i + 1];
@@ -85,7 +58,7 @@ void plc_surface_normals(const plc_surface* surface, plc_space space, float* xyz
   const auto n = static_cast<size_t>(surface->mesh.slots());
   std::vector<float> p(3 * n);
   plc_surface_positions(surface, space, p.data());
-  const double sign = mirrors(affine_of(*surface, space)) ? -1 : 1;
+  const double sign = affine_of(*surface, space).mirrors() ? -1 : 1;
   const auto at = [&](uint32_t v) {
     const size_t i = static_cast<size_t>(v) * 3;
     return plc::Vec3{p[i], p[i + 1], p[i + 2]};
@@ -130,6 +103,7 @@ plc_status plc_surface_level(const plc_surface* surface, int index, plc_level_re
   report->vertices = r.vertices;
   report->converged = r.converged ? 1 : 0;
   report->energy = r.energy;
+  report->speed = r.speed;
   report->seconds_topology = r.seconds.topology;
   report->seconds_normals = r.seconds.normals;
   report->seconds_dynamics = r.seconds.dynamics;
@@ -142,6 +116,9 @@ plc_status plc_surface_level(const plc_surface* surface, int index, plc_level_re
   report->tetrahedra = r.operations.tetrahedron;
   report->refinements = r.operations.refinement;
   report->deferred = r.operations.deferred;
+  report->late_bubbles = r.late.bubbles;
+  report->late_cavities = r.late.cavities;
+  report->late_volume = r.late.volume;
   return PLC_OK;
 }
 

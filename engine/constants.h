@@ -67,6 +67,17 @@ inline constexpr uint32_t kTinyComponent = 40;
 // ... and deleted when their volume falls under this (in delta^3) or changes sign.
 inline constexpr double kTinyVolume = 0.5;
 
+// ---- late bubbles ---------------------------------------------------------------------------
+
+// Radius of the smallest bubble, in delta: an icosahedron of it has edges of 1.2 delta. What holds
+// no such ball has sheets that are nearer than (3) allows.
+inline constexpr float kSmallestBubble = 1.15F;
+// Room between a bubble and the vertices of the rest, in delta: (3) and a little. No point of a
+// face is this far from its corners.
+inline constexpr float kBubbleGap = 1.5F;
+// Times that I_0 is searched again after it has converged: what a bubble grows into may hide more.
+inline constexpr int kLateRounds = 2;
+
 // ---- dynamics (3.5, 5.1) --------------------------------------------------------------------
 
 // RK4 is stable on the imaginary axis up to 2.83 and damped modes need less: dt sqrt(k / m) is

@@ -4,16 +4,29 @@
 #include <cmath>
 
 #include "engine/constants.h"
+#include "kernels/gradient_force.h"
 #include "kernels/image_force.h"
 #include "kernels/ring_forces.h"
 
 namespace plc {
 
-float stable_time_step(const Model& model) {
-  const double stiffness = 2.6 * static_cast<double>(model.curvature) +
-                           12.0 * static_cast<double>(model.spring) +
-                           std::abs(static_cast<double>(model.attraction));
-  const double longest = kStableFrequency * std::sqrt(static_cast<double>(model.mass) / stiffness);
+namespace {
+
+bool stretched(const Metric& m) {
+  return m.x != 1 || m.y != 1 || m.z != 1;
+}
+
+}  // namespace
+
+// (8) changes by at most 2 over U_h, and U_h is kUnitPerDelta delta.
+float stable_time_step(const Model& model, float stiffness) {
+  const double gradient =
+      std::max(std::abs(model.gradient_normal), std::abs(model.gradient_tangent));
+  const double stiffest = 2.6 * static_cast<double>(model.curvature) +
+                          12.0 * static_cast<double>(model.spring) +
+                          std::abs(static_cast<double>(model.attraction)) +
+                          2 / kUnitPerDelta * gradient + static_cast<double>(stiffness);
+  const double longest = kStableFrequency * std::sqrt(static_cast<double>(model.mass) / stiffest);
   return std::min(model.time_step, static_cast<float>(longest));
 }
 
@@ -52,43 +65,71 @@ double Dynamics::block_sum(const std::function<double(uint32_t, uint32_t)>& body
   return sum;
 }
 
-void Dynamics::step(const ImageView& image, float iso, Seconds& seconds) {
+Status Dynamics::step(const Guide& guide, Seconds& seconds) {
   resize();
-  time_step_ = stable_time_step(model_);
-  schedule_.run_passes(passes(image, iso, seconds), mesh_.padded() < kSerialBelow);
+  const bool user_force = guide.user != nullptr && guide.user->force;
+  if (stretched(guide.metric)) {
+    for (Streams3* s : {&metric_normal_, &metric_step_}) s->resize(mesh_.padded());
+  }
+  time_step_ = stable_time_step(model_, guide.user == nullptr ? 0 : guide.user->stiffness());
+  status_ = {};
+  // In order, the user's force is called on the calling thread.
+  schedule_.run_passes(passes(guide, seconds), user_force || mesh_.padded() < kSerialBelow);
+  return status_;
 }
 
-std::vector<Pass> Dynamics::passes(const ImageView& image, float iso, Seconds& seconds) {
+std::vector<Pass> Dynamics::passes(const Guide& guide, Seconds& seconds) {
   std::vector<Pass> table;
-  table.push_back({"normals", kRings | kPositions, kNormals, &seconds.normals, [this] {
-                     blocks([this](uint32_t begin, uint32_t end) {
-                       kernels::normals(simd_, mesh_.rings(), mesh_.packed.data(), begin, end,
-                                        mesh_.normal.x.data(), mesh_.normal.y.data(),
-                                        mesh_.normal.z.data());
-                     });
-                   }});
+  table.push_back({"normals", kRings | kPositions, kNormals, &seconds.normals,
+                   [this, guide] { normals(guide); }});
   table.push_back({"rest length", kRings | kPositions, kRestLength, &seconds.dynamics,
-                   [this] { measure_rest_length(); }});
-  for (int stage = 0; stage < 4; ++stage) add_stage(stage, image, iso, seconds, table);
+                   [this, guide] { measure_rest_length(guide); }});
+  for (int stage = 0; stage < 4; ++stage) add_stage(stage, guide, seconds, table);
   table.push_back({"bound", kRings | kPositions | kNormals | kRestLength,
                    kDisplacements | kVelocities | kStages | kLaplacians, &seconds.dynamics,
-                   [this, image, iso] { bound(image, iso); }});
+                   [this, guide] { bound(guide); }});
   table.push_back({"energy", kDisplacements | kNormals, kEnergy, &seconds.dynamics,
                    [this] { measure_energy(); }});
   table.push_back({"move", kDisplacements, kPositions, &seconds.dynamics, [this] { move(); }});
   return table;
 }
 
-void Dynamics::add_stage(int stage, const ImageView& image, float iso, Seconds& seconds,
+void Dynamics::add_stage(int stage, const Guide& guide, Seconds& seconds,
                          std::vector<Pass>& table) {
   if (model_.curvature > 0) {
     table.push_back({"laplacian", kRings | kPositions | kStages, kLaplacians, &seconds.dynamics,
                      [this, stage] { laplacians(stage); }});
   }
-  table.push_back({"forces and stage",
-                   kRings | kPositions | kVelocities | kNormals | kRestLength | kLaplacians,
-                   kStages | kDisplacements, &seconds.dynamics,
-                   [this, stage, image, iso] { forces_and_stage(stage, image, iso); }});
+  if (guide.user != nullptr && guide.user->force) {
+    table.push_back({"user force", kRings | kPositions | kNormals | kStages, kUserForce,
+                     &seconds.dynamics, [this, stage, guide] { user_force(stage, guide); }});
+  }
+  table.push_back(
+      {"forces and stage",
+       kRings | kPositions | kVelocities | kNormals | kRestLength | kLaplacians | kUserForce,
+       kStages | kDisplacements, &seconds.dynamics,
+       [this, stage, guide] { forces_and_stage(stage, guide); }});
+}
+
+void Dynamics::normals(const Guide& guide) {
+  blocks([&](uint32_t begin, uint32_t end) {
+    Streams3& n = mesh_.normal;
+    kernels::normals(simd_, mesh_.rings(), mesh_.packed.data(), begin, end, n.x.data(), n.y.data(),
+                     n.z.data());
+    if (!stretched(guide.metric)) return;
+    Streams3& m = metric_normal_;
+    Streams3& s = metric_step_;
+    kernels::metric_normals(simd_, guide.metric, n.x.data(), n.y.data(), n.z.data(), begin, end,
+                            m.x.data(), m.y.data(), m.z.data(), s.x.data(), s.y.data(), s.z.data());
+  });
+}
+
+void Dynamics::user_force(int stage, const Guide& guide) {
+  user_force_.resize(mesh_.padded());
+  for (Buffer<float>* f : {&user_force_.x, &user_force_.y, &user_force_.z}) {
+    std::fill(f->begin(), f->end(), 0.0F);
+  }
+  if (status_.ok()) status_ = guide.user->force(mesh_, stage_position(stage), user_force_);
 }
 
 void Dynamics::laplacians(int stage) {
@@ -97,9 +138,9 @@ void Dynamics::laplacians(int stage) {
   });
 }
 
-void Dynamics::forces_and_stage(int stage, const ImageView& image, float iso) {
+void Dynamics::forces_and_stage(int stage, const Guide& guide) {
   blocks([&](uint32_t begin, uint32_t end) {
-    stage_forces(stage, image, iso, begin, end);
+    stage_forces(stage, guide, begin, end);
     kernels::rk4_stage(simd_, stage, {1.0F / model_.mass, model_.damping, time_step_},
                        streams(stage), begin, end);
   });
@@ -110,8 +151,7 @@ const Packed* Dynamics::stage_position(int stage) const {
   return stage == 0 ? mesh_.packed.data() : stage_[stage % 2].data();
 }
 
-void Dynamics::stage_forces(int stage, const ImageView& image, float iso, uint32_t begin,
-                            uint32_t end) {
+void Dynamics::stage_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end) {
   float* fx = force_.x.data();
   float* fy = force_.y.data();
   float* fz = force_.z.data();
@@ -123,12 +163,35 @@ void Dynamics::stage_forces(int stage, const ImageView& image, float iso, uint32
   }
   if (model_.spring > 0) {
     kernels::spring_force(simd_, mesh_.rings(), stage_position(stage), model_.spring, rest_length_,
-                          {}, begin, end, fx, fy, fz);
+                          guide.metric, begin, end, fx, fy, fz);
   }
-  kernels::iso_force(simd_, image, stage_position(stage), mesh_.normal.x.data(),
-                     mesh_.normal.y.data(), mesh_.normal.z.data(),
-                     static_cast<float>(mesh_.delta) * model_.attraction, iso, begin, end, fx, fy,
-                     fz);
+  image_forces(stage, guide, begin, end);
+  if (guide.user == nullptr) return;
+  attach(*guide.user, stage_position(stage), mesh_.normal, begin, end, force_);
+  if (!guide.user->force) return;
+  for (uint32_t v = begin; v < end; ++v) force_.set(v, force_.at(v) + user_force_.at(v));
+}
+
+// (7) and (8), both normalised by delta (3.8).
+void Dynamics::image_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end) {
+  float* fx = force_.x.data();
+  float* fy = force_.y.data();
+  float* fz = force_.z.data();
+  const bool metric = stretched(guide.metric);
+  const auto delta = static_cast<float>(mesh_.delta);
+  if (model_.attraction != 0) {
+    const Streams3& n = metric ? metric_step_ : mesh_.normal;
+    kernels::iso_force(simd_, guide.image, stage_position(stage), n.x.data(), n.y.data(),
+                       n.z.data(), delta * model_.attraction, guide.iso, begin, end, fx, fy, fz);
+  }
+  if (guide.gradient.data != nullptr) {
+    const Streams3& n = metric ? metric_normal_ : mesh_.normal;
+    const Metric& m = guide.metric;
+    kernels::gradient_force(simd_, guide.gradient, stage_position(stage), n.x.data(), n.y.data(),
+                            n.z.data(), delta * model_.gradient_normal,
+                            delta * model_.gradient_tangent, {1 / m.x, 1 / m.y, 1 / m.z}, begin,
+                            end, fx, fy, fz);
+  }
 }
 
 kernels::Rk4Streams Dynamics::streams(int stage) {
@@ -156,15 +219,16 @@ kernels::Rk4Streams Dynamics::streams(int stage) {
           stage_[(stage + 1) % 2].data()};
 }
 
-void Dynamics::measure_rest_length() {
+void Dynamics::measure_rest_length(const Guide& guide) {
   rest_length_ = 0;
   if (model_.spring <= 0 || model_.rest_length == RestLength::kZero) return;
   if (model_.rest_length == RestLength::kValue) {
     rest_length_ = model_.rest_length_value * static_cast<float>(mesh_.delta);
     return;
   }
-  const double sum = block_sum([this](uint32_t begin, uint32_t end) {
-    return kernels::edge_length_sum(simd_, mesh_.rings(), mesh_.packed.data(), {}, begin, end);
+  const double sum = block_sum([&](uint32_t begin, uint32_t end) {
+    return kernels::edge_length_sum(simd_, mesh_.rings(), mesh_.packed.data(), guide.metric, begin,
+                                    end);
   });
   // Twice the edges of a closed mesh: the sum of the valences.
   uint64_t ends = 0;
@@ -185,7 +249,7 @@ float Dynamics::fastest() const {
 
 // Second method of 3.6: the displacement is about linear in the time step, so again with a shorter
 // one until the fastest vertex is within the bound; what is left is clamped.
-void Dynamics::scale_time_step(const ImageView& image, float iso, float longest) {
+void Dynamics::scale_time_step(const Guide& guide, float longest) {
   constexpr int kTries = 8;
   for (int i = 0; i < kTries; ++i) {
     const float moved = fastest();
@@ -193,16 +257,17 @@ void Dynamics::scale_time_step(const ImageView& image, float iso, float longest)
     time_step_ = time_step_ * (longest / moved) * 0.95F;
     for (int stage = 0; stage < 4; ++stage) {
       if (model_.curvature > 0) laplacians(stage);
-      forces_and_stage(stage, image, iso);
+      if (guide.user != nullptr && guide.user->force) user_force(stage, guide);
+      forces_and_stage(stage, guide);
     }
   }
 }
 
 // Afterwards the velocity of the mesh is the new one.
-void Dynamics::bound(const ImageView& image, float iso) {
+void Dynamics::bound(const Guide& guide) {
   auto& d = mesh_.displacement;
   const float longest = model_.max_move * static_cast<float>(mesh_.delta);
-  if (model_.bound == Bound::kScale) scale_time_step(image, iso, longest);
+  if (model_.bound == Bound::kScale) scale_time_step(guide, longest);
   blocks([&](uint32_t begin, uint32_t end) {
     auto& v = rate_;
     kernels::clamp_movement(simd_, longest, longest / time_step_, d.x.data(), d.y.data(),
@@ -213,6 +278,17 @@ void Dynamics::bound(const ImageView& image, float iso) {
     carry(v.x, mesh_.velocity.x);
     carry(v.y, mesh_.velocity.y);
     carry(v.z, mesh_.velocity.z);
+  });
+  if (guide.user != nullptr && !guide.user->pins.empty()) hold_pinned(guide);
+}
+
+void Dynamics::hold_pinned(const Guide& guide) {
+  blocks([&](uint32_t begin, uint32_t end) {
+    for (uint32_t v = begin; v < end; ++v) {
+      if (!pinned(*guide.user, mesh_.at(v))) continue;
+      mesh_.displacement.set(v, {});
+      mesh_.velocity.set(v, {});
+    }
   });
 }
 
@@ -236,6 +312,7 @@ void Dynamics::measure_energy() {
   const double scale = mesh_.delta * static_cast<double>(time_step_);
   const double count = std::max(1.0, static_cast<double>(mesh_.vertex_count()));
   energy_ = static_cast<double>(model_.mass) * sum / (2 * count * scale * scale);
+  speed_of_fastest_ = static_cast<double>(fastest()) / scale;
 }
 
 }  // namespace plc

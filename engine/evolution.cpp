@@ -27,10 +27,9 @@ void Evolution::restart() {
   resolution_.restart();
 }
 
-void Evolution::iterate(const ImageView& image, float iso, Seconds& seconds,
-                        OperationCounts& counts) {
+Status Evolution::iterate(const Guide& guide, Seconds& seconds, OperationCounts& counts) {
   const double start = now();
-  dynamics_.step(image, iso, seconds);
+  if (Status s = dynamics_.step(guide, seconds); !s.ok()) return s;
   const double moved = now();
   const auto& due = resolution_.take_due(false);
   counts.reverted += guard_.take_back(dynamics_.before(), due, resolution_.hash());
@@ -39,6 +38,7 @@ void Evolution::iterate(const ImageView& image, float iso, Seconds& seconds,
   const double end = now();
   seconds.topology += end - moved;
   seconds.total += end - start;
+  return {};
 }
 
 void Evolution::check_all(Seconds& seconds, OperationCounts& counts) {

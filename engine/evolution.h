@@ -15,8 +15,9 @@ class Evolution {
   // The ids or delta of the mesh have changed: at the start of a level.
   void restart();
   // Moves the vertices, takes back what would make the surface meet itself, resolves the
-  // constraints of the vertices that are due (of all: check_all).
-  void iterate(const ImageView& image, float iso, Seconds& seconds, OperationCounts& counts);
+  // constraints of the vertices that are due (of all: check_all). Fails where the user's force
+  // does.
+  Status iterate(const Guide& guide, Seconds& seconds, OperationCounts& counts);
   // The constraints of all vertices, without a movement: at the end of a level.
   void check_all(Seconds& seconds, OperationCounts& counts);
   // Tests all faces, not only those at risk. False when some meet; their vertices are at risk from
@@ -24,6 +25,8 @@ class Evolution {
   bool embedded();
   // Kinetic energy along the normals of the last iteration (5.1).
   double energy() const { return dynamics_.energy(); }
+  // The longest movement of the last iteration, in delta per time.
+  double speed() const { return dynamics_.speed(); }
 
  private:
   Mesh& mesh_;

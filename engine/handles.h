@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/frame.h"
 #include "engine/mesh.h"
 #include "engine/pellicle.h"
 #include "engine/recovery.h"
@@ -23,9 +24,7 @@ struct plc_context {
 struct plc_surface {
   plc::Mesh mesh;  // ids without gaps, in Morton order
   plc::MeshSpace space;
-  std::array<double, 3> spacing{};
-  std::array<double, 3> origin{};
-  std::array<double, 9> direction{};
+  plc::Frame frame;
   plc_parameters parameters{};
   plc::VoxelRange range;
   std::vector<plc::LevelRecord> records;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include "engine/constants.h"
 #include "engine/refinement.h"
@@ -50,6 +51,23 @@ void make_sphere(Mesh& mesh, double edge, const Executor& executor) {
   }
 }
 
+// Adds a unit sphere, stretched and moved; ids in its order.
+void append(Mesh& mesh, const Mesh& sphere, Vec3 centre, Vec3 radii, bool inward) {
+  std::vector<uint32_t> id(sphere.slots());
+  for (uint32_t v = 0; v < sphere.slots(); ++v) {
+    const Vec3 p = sphere.at(v);
+    id[v] = mesh.create(centre + Vec3{p.x * radii.x, p.y * radii.y, p.z * radii.z}, {});
+  }
+  for (uint32_t v = 0; v < sphere.slots(); ++v) {
+    const Neighbors from = sphere.ring(v);
+    Neighbors ring;
+    for (uint32_t n = 0; n < from.size(); ++n) {
+      ring.push_back(id[from[inward ? from.size() - 1 - n : n]]);
+    }
+    mesh.set_ring(id[v], ring);
+  }
+}
+
 // Edges of initial surfaces, in delta: under (2) with room for uneven spacing.
 constexpr double kInitialEdge = 2.0;
 
@@ -79,6 +97,13 @@ void make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& ex
   mesh.delta = delta;
 }
 
+void append_bubble(Mesh& mesh, Vec3 centre, Vec3 radii, bool inward, const Executor& executor) {
+  const double radius = static_cast<double>(std::max({radii.x, radii.y, radii.z}));
+  Mesh sphere;
+  make_sphere(sphere, kInitialEdge * mesh.delta / radius, executor);
+  append(mesh, sphere, centre, radii, inward);
+}
+
 Status make_bubbles(Mesh& mesh, const Extent& box, const std::array<int, 3>& counts, double delta,
                     const Executor& executor) {
   double pitch[3];
@@ -99,21 +124,14 @@ Status make_bubbles(Mesh& mesh, const Extent& box, const std::array<int, 3>& cou
   Mesh sphere;
   make_sphere(sphere, kInitialEdge * delta / radius, executor);
   mesh.clear();
+  const auto r = static_cast<float>(radius);
   for (int k = 0; k < counts[2]; ++k) {
     for (int j = 0; j < counts[1]; ++j) {
       for (int i = 0; i < counts[0]; ++i) {
-        const uint32_t first = mesh.slots();
         const Vec3 centre{static_cast<float>(box.low[0] + (i + 0.5) * pitch[0]),
                           static_cast<float>(box.low[1] + (j + 0.5) * pitch[1]),
                           static_cast<float>(box.low[2] + (k + 0.5) * pitch[2])};
-        for (uint32_t v = 0; v < sphere.slots(); ++v) {
-          mesh.create(centre + sphere.at(v) * static_cast<float>(radius), {});
-        }
-        for (uint32_t v = 0; v < sphere.slots(); ++v) {
-          Neighbors ring = sphere.ring(v);
-          for (uint32_t n = 0; n < ring.size(); ++n) ring[n] += first;
-          mesh.set_ring(first + v, ring);
-        }
+        append(mesh, sphere, centre, {r, r, r}, false);
       }
     }
   }

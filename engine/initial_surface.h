@@ -3,6 +3,7 @@
 #include <array>
 
 #include "engine/mesh.h"
+#include "engine/vec3.h"
 #include "pyramid/executor.h"
 #include "pyramid/status.h"
 
@@ -18,6 +19,10 @@ struct Extent {
 // by (3.4) onto |x/a|^4 + |y/b|^4 + |z/c|^4 = 1, which circumscribes the box and wastes less room
 // than the ellipsoid does. mesh.delta = delta.
 void make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& executor);
+
+// Adds a sphere with edges of 1 to 2 delta to the mesh, which keeps its delta; `inward`: the wall
+// of a cavity. The caller sees to it that it is apart from the rest by (3).
+void append_bubble(Mesh& mesh, Vec3 centre, Vec3 radii, bool inward, const Executor& executor);
 
 // counts[0] x counts[1] x counts[2] spheres over the box, apart from each other by (3).
 // kInvalidArgument when they would be too small for delta.

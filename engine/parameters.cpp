@@ -66,24 +66,38 @@ Status check_levels(const plc_parameters& p) {
 
 Status check_choices(const plc_parameters& p) {
   return check_ranges(
-      {{"init", static_cast<double>(p.init),
-        p.init >= PLC_INIT_BUBBLE && p.init <= PLC_INIT_BUBBLES, "a plc_init"},
+      {{"init", static_cast<double>(p.init), p.init >= PLC_INIT_BUBBLE && p.init <= PLC_INIT_MESH,
+        "a plc_init"},
+       {"force", static_cast<double>(p.force),
+        p.force >= PLC_FORCE_ISO && p.force <= PLC_FORCE_BOTH, "a plc_force"},
+       {"feature", static_cast<double>(p.feature),
+        p.feature >= PLC_FEATURE_NONE && p.feature <= PLC_FEATURE_GRADIENT_NORM, "a plc_feature"},
+       {"late bubbles", static_cast<double>(p.late_bubbles),
+        p.late_bubbles == 0 || p.late_bubbles == 1, "0 or 1"},
        {"rest length", static_cast<double>(p.rest_length),
         p.rest_length >= PLC_REST_ZERO && p.rest_length <= PLC_REST_VALUE, "a plc_rest_length"},
        {"bound", static_cast<double>(p.bound),
         p.bound >= PLC_BOUND_CLAMP && p.bound <= PLC_BOUND_SCALE, "a plc_bound"},
        {"anisotropy", static_cast<double>(p.anisotropy),
-        p.anisotropy >= PLC_ANISOTROPY_PHYSICAL && p.anisotropy <= PLC_ANISOTROPY_VOXEL,
+        p.anisotropy >= PLC_ANISOTROPY_PHYSICAL && p.anisotropy <= PLC_ANISOTROPY_METRIC,
         "a plc_anisotropy"}});
 }
 
 }  // namespace
 
 Status check_parameters(const plc_parameters& p) {
-  if (std::isnan(p.iso)) return {ErrorCode::kInvalidArgument, "iso: not set"};
-  if (!std::isfinite(p.iso)) return bad("iso", p.iso, "finite");
-  if (Status s = check_levels(p); !s.ok()) return s;
   if (Status s = check_choices(p); !s.ok()) return s;
+  if (std::isnan(p.iso)) {
+    if (p.force != PLC_FORCE_GRADIENT) return {ErrorCode::kInvalidArgument, "iso: not set"};
+    if (p.init == PLC_INIT_ISO) {
+      return {ErrorCode::kInvalidArgument, "iso: not set, but the start is an iso-surface"};
+    }
+    if (p.level_iso_count != 0) {
+      return {ErrorCode::kInvalidArgument, "level iso-values: given, but iso is not set"};
+    }
+  }
+  if (std::isinf(p.iso)) return bad("iso", p.iso, "finite");
+  if (Status s = check_levels(p); !s.ok()) return s;
   for (const int n : p.bubbles) {
     if (n < 1 || n > 256) return bad("bubbles", n, "1 .. 256 per axis");
   }
@@ -98,6 +112,12 @@ Status check_parameters(const plc_parameters& p) {
       {"spring", p.spring, coefficient(p.spring), "0 .. 1e6"},
       {"rest length", p.rest_length_value, coefficient(p.rest_length_value), "0 .. 1e6"},
       {"attraction", p.attraction, positive(p.attraction), "1e-6 .. 1e6"},
+      {"gradient", p.gradient, coefficient(std::abs(p.gradient)), "-1e6 .. 1e6"},
+      {"gradient tangent", p.gradient_tangent, coefficient(std::abs(p.gradient_tangent)),
+       "-1e6 .. 1e6"},
+      {"gradient bound", p.gradient_bound, positive(p.gradient_bound), "1e-6 .. 1e6"},
+      {"feature sigma", p.feature_sigma, coefficient(p.feature_sigma), "0 .. 1e6 mm"},
+      {"calm speed", p.calm_speed, coefficient(p.calm_speed), "0 .. 1e6"},
       {"mass", p.mass, positive(p.mass), "1e-6 .. 1e6"},
       {"damping", p.damping, coefficient(p.damping), "0 .. 1e6"},
       {"time step", p.time_step, positive(p.time_step), "1e-6 .. 1e6"},
@@ -115,20 +135,26 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
     return {ErrorCode::kInvalidData,
             "constant image: every voxel is " + text(range.low) + ", there is no surface in it"};
   }
-  const bool within =
-      above ? p.iso > range.low && p.iso <= range.high : p.iso >= range.low && p.iso < range.high;
+  const bool within = std::isnan(p.iso) || (above ? p.iso > range.low && p.iso <= range.high
+                                                  : p.iso >= range.low && p.iso < range.high);
   if (!within) {
     return {ErrorCode::kInvalidArgument, "iso " + text(p.iso) + ": outside the image's range " +
                                              text(range.low) + " .. " + text(range.high)};
   }
-  const Window window = derive_window(volume, range, p.iso, above, executor);
+  const Window window = std::isnan(p.iso) ? Window{range.low, range.high, range.low}
+                                          : derive_window(volume, range, p.iso, above, executor);
   background = window.background;
   if (std::isnan(p.window_low)) p.window_low = window.low;
   if (std::isnan(p.window_high)) p.window_high = window.high;
-  if (!(p.window_low < p.iso && p.iso < p.window_high)) {
-    return {ErrorCode::kInvalidArgument, "window " + text(p.window_low) + ", " +
-                                             text(p.window_high) + ": iso " + text(p.iso) +
-                                             " must lie inside it"};
+  const std::string window_text =
+      "window " + text(p.window_low) + ", " + text(p.window_high) + ": ";
+  if (std::isnan(p.iso)) {
+    if (!(p.window_low < p.window_high)) {
+      return {ErrorCode::kInvalidArgument, window_text + "must be a low value and a higher one"};
+    }
+  } else if (!(p.window_low < p.iso && p.iso < p.window_high)) {
+    return {ErrorCode::kInvalidArgument,
+            window_text + "iso " + text(p.iso) + " must lie inside it"};
   }
   for (int h = 0; h < p.level_iso_count; ++h) {
     if (p.level_iso[h] <= p.window_low || p.level_iso[h] >= p.window_high) {
@@ -161,7 +187,7 @@ PyramidSpec pyramid_spec(const plc_parameters& p) {
   return spec;
 }
 
-RecoverySpec recovery_spec(const plc_parameters& p, const std::array<double, 3>& spacing) {
+RecoverySpec recovery_spec(const plc_parameters& p) {
   RecoverySpec spec;
   spec.inside_above = p.inside_below == 0;
   Model& m = spec.model;
@@ -170,19 +196,28 @@ RecoverySpec recovery_spec(const plc_parameters& p, const std::array<double, 3>&
   m.rest_length = static_cast<RestLength>(p.rest_length);
   m.rest_length_value = static_cast<float>(p.rest_length_value);
   // alpha_I is negative when the object is bright: (7).
-  m.attraction = static_cast<float>(spec.inside_above ? -p.attraction : p.attraction);
+  if (p.force == PLC_FORCE_GRADIENT) {
+    m.attraction = 0;
+  } else {
+    m.attraction = static_cast<float>(spec.inside_above ? -p.attraction : p.attraction);
+  }
+  if (p.force != PLC_FORCE_ISO) {
+    m.gradient_normal = static_cast<float>(p.gradient);
+    m.gradient_tangent = static_cast<float>(p.gradient_tangent);
+  }
+  spec.gradient_bound = p.gradient_bound;
   m.mass = static_cast<float>(p.mass);
   m.damping = static_cast<float>(p.damping);
   m.time_step = static_cast<float>(p.time_step);
   m.max_move = static_cast<float>(p.max_move);
   m.bound = static_cast<Bound>(p.bound);
   spec.pad_voxels = kPadVoxels;
-  const double finest = *std::min_element(spacing.begin(), spacing.end());
-  for (size_t a = 0; a < 3; ++a) {
-    spec.space.step[a] = p.anisotropy == PLC_ANISOTROPY_PHYSICAL ? spacing[a] / finest : 1.0;
-  }
-  spec.init = static_cast<Init>(p.init);
-  spec.bubbles = {p.bubbles[0], p.bubbles[1], p.bubbles[2]};
+  spec.anisotropy = static_cast<Anisotropy>(p.anisotropy);
+  spec.start.init = static_cast<Init>(p.init);
+  spec.start.bubbles = {p.bubbles[0], p.bubbles[1], p.bubbles[2]};
+  // Without the force towards iso nothing holds a bubble to what it tells.
+  spec.late_bubbles = p.late_bubbles != 0 && p.force != PLC_FORCE_GRADIENT;
+  spec.calm_speed = p.calm_speed;
   spec.epsilon = p.epsilon;
   spec.max_iterations = p.max_iterations;
   return spec;

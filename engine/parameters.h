@@ -29,7 +29,7 @@ inline double denormalised(const plc_parameters& p, double value) {
 double level_iso_bound(const plc_parameters& parameters, double background);
 
 PyramidSpec pyramid_spec(const plc_parameters& parameters);
-// Everything but the iso-values of the levels.
-RecoverySpec recovery_spec(const plc_parameters& parameters, const std::array<double, 3>& spacing);
+// Everything but the iso-values of the levels and what plc_extras holds.
+RecoverySpec recovery_spec(const plc_parameters& parameters);
 
 }  // namespace plc

@@ -107,10 +107,28 @@ typedef enum plc_rest_length {
   PLC_REST_VALUE = 2 /* rest_length_value */
 } plc_rest_length;
 
+/* The surface that the evolution starts from (3.6), on the coarsest level. */
 typedef enum plc_init {
-  PLC_INIT_BUBBLE = 0, /* one bubble around the object on the coarsest level */
-  PLC_INIT_BUBBLES = 1 /* bubbles[0] x bubbles[1] x bubbles[2] bubbles over the image */
+  PLC_INIT_BUBBLE = 0,  /* one bubble around the object; around the image where iso is NAN */
+  PLC_INIT_BUBBLES = 1, /* bubbles[0] x bubbles[1] x bubbles[2] bubbles over the image */
+  PLC_INIT_SEEDS = 2,   /* the spheres of plc_extras */
+  PLC_INIT_ISO = 3,  /* the iso-surface of the coarsest image, closed at the border (figure 23) */
+  PLC_INIT_MASK = 4, /* the surface of the mask of plc_extras, reduced like the image */
+  PLC_INIT_MESH = 5  /* the mesh of plc_extras, brought to satisfy (1)-(3) */
 } plc_init;
+
+/* Which forces of the image act (3.8). */
+typedef enum plc_force {
+  PLC_FORCE_ISO = 1,      /* (7): towards the value iso */
+  PLC_FORCE_GRADIENT = 2, /* (8): along the gradient; iso may be NAN */
+  PLC_FORCE_BOTH = 3
+} plc_force;
+
+/* What the evolution takes for the image; iso, window and pad are values of it. */
+typedef enum plc_feature {
+  PLC_FEATURE_NONE = 0,         /* the image itself */
+  PLC_FEATURE_GRADIENT_NORM = 1 /* the norm of its gradient, per mm, after a Gaussian (3.8) */
+} plc_feature;
 
 typedef enum plc_bound {
   PLC_BOUND_CLAMP = 0, /* the speed of each vertex is bounded (3.6, first method) */
@@ -119,7 +137,8 @@ typedef enum plc_bound {
 
 typedef enum plc_anisotropy {
   PLC_ANISOTROPY_PHYSICAL = 1, /* method 1 of 4.4: the mesh lives in mm */
-  PLC_ANISOTROPY_VOXEL = 2     /* method 2 of 4.4: the mesh lives in voxel proportions */
+  PLC_ANISOTROPY_VOXEL = 2,    /* method 2 of 4.4: the mesh lives in voxel proportions */
+  PLC_ANISOTROPY_METRIC = 3    /* method 3 of 4.4: in those of each level, the forces in mm */
 } plc_anisotropy;
 
 #define PLC_MAX_LEVELS 32
@@ -127,12 +146,14 @@ typedef enum plc_anisotropy {
 typedef struct plc_parameters {
   size_t struct_size;
   /* what to extract */
-  double iso;                       /* in the image's units, within its range; NAN: not set */
+  double iso; /* in the image's units, within its range; NAN: not set, for PLC_FORCE_GRADIENT */
   int inside_below;                 /* 0: the object is where the image is >= iso; 1: <= iso */
   double level_iso[PLC_MAX_LEVELS]; /* pi_I per level, [0] for I_0, in the image's units */
   int level_iso_count;              /* 0: derived; else levels + 1 */
   double window_low, window_high;   /* image units mapped to 0 and 1; NAN: derived */
   double pad_value;                 /* what surrounds the image; NAN: the outside end of window */
+  plc_feature feature;
+  double feature_sigma; /* of the Gaussian, mm, >= 0; 0: none */
   /* the pyramid */
   int levels;       /* levels above I_0; -1: 3, or fewer when the image is small; 0: direct */
   double reduction; /* rho, 1 < rho <= 2 */
@@ -144,15 +165,21 @@ typedef struct plc_parameters {
   double spring;    /* alpha_e (6), >= 0 */
   plc_rest_length rest_length;
   double rest_length_value; /* in units of delta, >= 0 */
-  double attraction;        /* |alpha_I| (7), > 0 */
-  double mass;              /* m (4), > 0 */
-  double damping;           /* gamma (4), >= 0 */
-  double time_step;         /* dt, > 0; lowered where the forces make it unstable */
-  double max_move;          /* bound of a vertex's movement per iteration, in delta, (0, 1] */
+  plc_force force;
+  double attraction;       /* |alpha_I| (7), > 0 */
+  double gradient;         /* alpha_gradI (8), along the normal; < 0: away from bright */
+  double gradient_tangent; /* beta_gradI (8), along the tangent plane */
+  double gradient_bound;   /* norm of the gradient, in window per U_h, at which (8) is 1; > 0 */
+  double mass;             /* m (4), > 0 */
+  double damping;          /* gamma (4), >= 0 */
+  double time_step;        /* dt, > 0; lowered where the forces make it unstable */
+  double max_move;         /* bound of a vertex's movement per iteration, in delta, (0, 1] */
   plc_bound bound;
   plc_anisotropy anisotropy;
   double epsilon;     /* kinetic energy along the normals below which a level has converged, > 0 */
-  int max_iterations; /* per level, >= 1 */
+  double calm_speed;  /* also no vertex may be as fast, in delta per time; 0: not asked */
+  int max_iterations; /* per level, >= 1; I_0 may take as many again after late bubbles */
+  int late_bubbles;   /* 1: bubbles start in what a level's surface has missed; 0: as the paper */
 } plc_parameters;
 
 PLC_API void plc_parameters_defaults(plc_parameters* parameters);
@@ -163,7 +190,8 @@ typedef struct plc_progress {
   int levels;    /* levels above I_0 */
   int iteration; /* of this level, from 1 */
   int64_t vertices;
-  double energy;   /* kinetic energy along the normals */
+  double energy;   /* kinetic energy along the normals, in m (delta / dt)^2 (5.1) */
+  double speed;    /* of the fastest vertex, in delta per time */
   double fraction; /* an estimate of what is done, 0 .. 1, never falling */
   double seconds;  /* since the start of the call */
 } plc_progress;
@@ -171,11 +199,84 @@ typedef struct plc_progress {
 /* Called on the calling thread after every iteration. Return 0 to go on, any other to cancel. */
 typedef int (*plc_progress_fn)(const plc_progress* progress, void* user);
 
-/* PyramidalRecoverShape (fig. 13). progress may be NULL. On any status but PLC_OK *surface is
- * NULL. The surface is closed, oriented outward and free of self-intersections. */
+typedef struct plc_seed {
+  double centre[3];
+  double radius; /* mm, > 0 */
+} plc_seed;
+
+/* A place that draws the surface near it along its normals until the surface goes through it (3.8):
+ * the pull is strength times the distance along the normal, fading to 0 at the radius. */
+typedef struct plc_attachment {
+  double place[3];
+  double radius;   /* mm, > 0 */
+  double strength; /* stiffness relative to the attraction, 0 .. 1e6 */
+} plc_attachment;
+
+/* A ball in which no force moves a vertex; transformations still keep the constraints there. */
+typedef struct plc_pin {
+  double place[3];
+  double radius; /* mm, > 0 */
+} plc_pin;
+
+/* All living vertices, at one stage of Runge-Kutta. */
+typedef struct plc_force_points {
+  size_t struct_size;
+  int level;
+  int64_t count;
+  const float* xyz;     /* 3 * count positions in the space of plc_extras */
+  const float* normals; /* 3 * count outward unit normals in it */
+} plc_force_points;
+
+/* Writes 3 * count forces, which are 0 before, in the space of plc_extras. 1 is the pull of (7)
+ * with attraction 1 on a vertex whose image value is a whole window away from iso. Four calls per
+ * iteration, or more with PLC_BOUND_SCALE, all on the calling thread. Return 0 to go on, any other
+ * to cancel. A force that is not finite ends the call with PLC_INVALID_ARGUMENT. */
+typedef int (*plc_force_fn)(const plc_force_points* points, float* forces, void* user);
+
+typedef struct plc_level_report plc_level_report;
+
+typedef enum plc_verdict {
+  PLC_VERDICT_ACCEPT = 0, /* on to the next level */
+  PLC_VERDICT_MORE = 1,   /* up to max_iterations more on this level */
+  PLC_VERDICT_STOP = 2    /* the surface as it is is the result */
+} plc_verdict;
+
+/* The user's validation (5.1): called on the calling thread at the end of every level that holds a
+ * surface, which may be asked for anything but must not be kept or freed. */
+typedef plc_verdict (*plc_level_fn)(const plc_level_report* level, const plc_surface* surface,
+                                    void* user);
+
+/* What goes beyond an image and numbers. Everything is borrowed for the duration of the call. */
+typedef struct plc_extras {
+  size_t struct_size;
+  plc_progress_fn progress; /* may be NULL, as all below */
+  void* progress_user;
+  plc_level_fn level;
+  void* level_user;
+  plc_force_fn force;
+  void* force_user;
+  plc_space space;       /* of all places below and of force */
+  const plc_seed* seeds; /* PLC_INIT_SEEDS: apart from each other, 1.15 delta or more in radius */
+  int64_t seed_count;
+  const plc_image* mask;  /* PLC_INIT_MASK: as many voxels as the image; where not 0: the object */
+  const double* mesh_xyz; /* PLC_INIT_MESH: closed, oriented, embedded; 3 * mesh_vertex_count */
+  int64_t mesh_vertex_count;
+  const uint32_t* mesh_abc; /* counter-clockwise seen from outside; 3 * mesh_face_count */
+  int64_t mesh_face_count;
+  const plc_attachment* attachments;
+  int64_t attachment_count;
+  const plc_pin* pins;
+  int64_t pin_count;
+} plc_extras;
+
+/* Nothing, PLC_SPACE_LPS. */
+PLC_API void plc_extras_defaults(plc_extras* extras);
+
+/* PyramidalRecoverShape (fig. 13). extras may be NULL. On any status but PLC_OK *surface is NULL.
+ * The surface is closed, oriented outward and free of self-intersections. */
 PLC_API plc_status plc_extract(plc_context* context, const plc_image* image,
-                               const plc_parameters* parameters, plc_progress_fn progress,
-                               void* user, plc_surface** surface);
+                               const plc_parameters* parameters, const plc_extras* extras,
+                               plc_surface** surface);
 
 /* ---- surface ---------------------------------------------------------------------------- */
 
@@ -207,7 +308,7 @@ PLC_API plc_status plc_surface_measure(plc_context* context, const plc_surface* 
                                        plc_space space, plc_measures* measures);
 
 /* How the surface came to be, level by level. */
-typedef struct plc_level_report {
+struct plc_level_report {
   size_t struct_size;
   int level;       /* h */
   int64_t dims[3]; /* of I_h, padding included */
@@ -218,10 +319,13 @@ typedef struct plc_level_report {
   int64_t vertices; /* at the end of the level */
   int converged;    /* 0: the iteration cap ended it */
   double energy;    /* at the end */
+  double speed;     /* of the fastest vertex at the end, in delta per time */
   double seconds_topology, seconds_normals, seconds_dynamics, seconds_total;
   int64_t creations, inversions, deletions, annular, axial, tetrahedra, refinements;
-  int64_t deferred; /* operations that a limit put off to the next iteration */
-} plc_level_report;
+  int64_t deferred;                    /* operations that a limit put off to the next iteration */
+  int64_t late_bubbles, late_cavities; /* started in parts and cavities that had been missed */
+  double late_volume;                  /* of all of them as they started, mm3 */
+};
 /* 0 .. plc_surface_level_count - 1, from coarse to fine. */
 PLC_API int plc_surface_level_count(const plc_surface* surface);
 PLC_API plc_status plc_surface_level(const plc_surface* surface, int index,

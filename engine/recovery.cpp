@@ -6,56 +6,27 @@
 #include "engine/constants.h"
 #include "engine/evolution.h"
 #include "engine/refinement.h"
+#include "pyramid/gradient.h"
 
 namespace plc {
 
 namespace {
 
-// The box of mesh space that the part of an image on the object's side of iso fills; false when it
-// is empty.
-bool object_extent(const PyramidLevel& level, const ImageView& view, float iso, bool inside_above,
-                   Extent& box) {
-  std::array<int64_t, 3> low = level.dims;
-  std::array<int64_t, 3> high{-1, -1, -1};
-  size_t i = 0;
-  for (int64_t z = 0; z < level.dims[2]; ++z) {
-    for (int64_t y = 0; y < level.dims[1]; ++y) {
-      for (int64_t x = 0; x < level.dims[0]; ++x, ++i) {
-        if (inside_above ? level.values[i] < iso : level.values[i] > iso) continue;
-        const std::array<int64_t, 3> at{x, y, z};
-        for (size_t a = 0; a < 3; ++a) {
-          low[a] = std::min(low[a], at[a]);
-          high[a] = std::max(high[a], at[a]);
-        }
-      }
-    }
-  }
-  for (size_t a = 0; a < 3; ++a) {
-    if (high[a] < 0) return false;
-    // Half a voxel more: where the iso-surface may lie.
-    const auto at = [&](double voxel) {
-      return (voxel - static_cast<double>(view.offset[a])) / static_cast<double>(view.scale[a]);
-    };
-    box.low[a] = at(static_cast<double>(low[a]) - 0.5);
-    box.high[a] = at(static_cast<double>(high[a]) + 0.5);
-  }
-  return true;
-}
-
 class Recovery {
  public:
   Recovery(const Pyramid& pyramid, const RecoverySpec& spec, const Schedule& schedule,
-           SimdTarget simd, const RecoveryProgressFn& progress, Mesh& mesh)
+           SimdTarget simd, const RecoveryHooks& hooks, Mesh& mesh)
       : pyramid_(pyramid),
         spec_(spec),
         schedule_(schedule),
-        progress_(progress),
+        simd_(simd),
+        hooks_(hooks),
         mesh_(mesh),
         evolution_(mesh, schedule, simd, spec.model),
         levels_(static_cast<int>(pyramid.levels.size()) - 1) {}
 
   Status run(std::vector<LevelRecord>& records) {
-    for (int h = levels_; h >= 0; --h) {
+    for (int h = levels_; h >= 0 && !stopped_; --h) {
       records.emplace_back();
       records.back().level = h;
       if (Status s = recover_level(h, records.back()); !s.ok()) return s;
@@ -68,19 +39,25 @@ class Recovery {
   // U_h / delta_h is the same on every level, within (14).
   double delta_of(int h) const { return unit_of(h) / kUnitPerDelta; }
   // U_h in mesh units.
-  double unit_of(int h) const {
-    return pyramid_.levels[static_cast<size_t>(h)].unit / pyramid_.levels[0].unit;
-  }
+  double unit_of(int h) const { return image_of(h).unit / pyramid_.levels[0].unit; }
   float iso_of(int h) const { return static_cast<float>(spec_.isos[static_cast<size_t>(h)]); }
+  const PyramidLevel& image_of(int h) const { return pyramid_.levels[static_cast<size_t>(h)]; }
 
   // A level on which the object does not show, or cannot hold the surface, is passed over: the
   // surface then starts on the next finer one.
   Status recover_level(int h, LevelRecord& record) {
-    if (mesh_.vertex_count() == 0) {
-      if (Status s = start(h); !s.ok()) return s;
+    enter(h);
+    const bool fresh = mesh_.vertex_count() == 0;
+    if (fresh) {
+      const LevelImage level{pyramid_, h, spec_.pad_voxels, space_, iso_of(h), spec_.inside_above};
+      if (Status s = start_surface(spec_.start, level, delta_of(h), schedule_, simd_, mesh_,
+                                   record.operations);
+          !s.ok()) {
+        return s;
+      }
     }
     if (mesh_.vertex_count() != 0) {
-      if (Status s = recover_shape(h, record); !s.ok()) return s;
+      if (Status s = recover_shape(h, fresh, record); !s.ok()) return s;
     }
     if (h > 0 || mesh_.vertex_count() != 0) return {};
     return {ErrorCode::kInvalidData,
@@ -88,32 +65,57 @@ class Recovery {
             "use weaker internal forces"};
   }
 
-  // The initial surface, on the image of level h; none where no voxel is on the object's side.
-  Status start(int h) {
-    mesh_.clear();
-    Extent box;
-    if (!object_extent(pyramid_.levels[static_cast<size_t>(h)], image_view(pyramid_, h, spec_),
-                       iso_of(h), spec_.inside_above, box)) {
-      return {};
-    }
-    if (spec_.init == Init::kBubble) {
-      make_bubble(mesh_, box, delta_of(h), schedule_);
-      return {};
-    }
-    // The grid of bubbles spans the unpadded image.
-    const PyramidLevel& finest = pyramid_.levels[0];
+  // The space and the guide of level h.
+  void enter(int h) {
+    const MeshSpace before = space_;
+    space_ = mesh_space(pyramid_, h, spec_.anisotropy);
+    if (mesh_.vertex_count() != 0) change_space(mesh_, before, space_);
+    guide_.image = image_view(pyramid_, h, spec_.pad_voxels, space_);
+    guide_.iso = iso_of(h);
+    guide_.metric = space_.metric;
+    user_ = spec_.user;
+    const auto place = [this](Vec3 voxel) {
+      const auto& s = space_.step;
+      return Vec3{voxel.x * static_cast<float>(s[0]), voxel.y * static_cast<float>(s[1]),
+                  voxel.z * static_cast<float>(s[2])};
+    };
+    for (Attachment& a : user_.attachments) a.place = place(a.place);
+    for (Pin& p : user_.pins) p.place = place(p.place);
     for (size_t a = 0; a < 3; ++a) {
-      const auto voxels = static_cast<double>(finest.dims[a] - 2 * spec_.pad_voxels);
-      box.low[a] = -0.5 * spec_.space.step[a];
-      box.high[a] = (voxels - 0.5) * spec_.space.step[a];
+      user_.millimetres[a] = static_cast<float>(pyramid_.levels[0].voxel[a] / space_.step[a]);
     }
-    return make_bubbles(mesh_, box, spec_.bubbles, delta_of(h), schedule_);
+    if (spec_.force) {
+      user_.force = [this, h](const Mesh& mesh, const Packed* position, Streams3& force) {
+        return spec_.force(h, space_, mesh, position, force);
+      };
+    }
+    guide_.user = &user_;
+  }
+
+  // (8) on level h: per U_h, in the lengths of the forces.
+  Status build_gradient_image(int h) {
+    const Model& model = spec_.model;
+    if (model.gradient_normal == 0 && model.gradient_tangent == 0) return {};
+    const float metric[3] = {space_.metric.x, space_.metric.y, space_.metric.z};
+    std::array<double, 3> voxel;
+    for (size_t a = 0; a < 3; ++a) {
+      voxel[a] =
+          static_cast<double>(metric[a]) / static_cast<double>(guide_.image.scale[a]) / unit_of(h);
+      guide_.gradient.dims[a] = guide_.image.dims[a];
+      guide_.gradient.scale[a] = guide_.image.scale[a];
+      guide_.gradient.offset[a] = guide_.image.offset[a];
+    }
+    Status s =
+        build_gradient(image_of(h), voxel, spec_.gradient_bound, schedule_, simd_, gradient_);
+    guide_.gradient.data = gradient_.data();
+    return s;
   }
 
   // Figure 12, first loop: refine until the density fits the image. With rho = sqrt 3 that is one
   // refinement per level; for other factors delta is set to fit afterwards, and creations and
   // deletions do the rest.
   void adapt(int h, LevelRecord& record) {
+    const double start = now();
     const double target = delta_of(h);
     const auto steps = std::lround(std::log(mesh_.delta / target) / std::log(kRefinement));
     for (long i = 0; i < steps; ++i) {
@@ -123,42 +125,99 @@ class Recovery {
     mesh_.delta = target;
     for (uint32_t v = 0; v < mesh_.slots(); ++v) mesh_.wake(v);
     evolution_.restart();
-  }
-
-  Status recover_shape(int h, LevelRecord& record) {
-    const double start = now();
-    adapt(h, record);
-    record.delta = mesh_.delta;
+    record.delta = target;
     record.seconds.topology += now() - start;
     record.seconds.total += now() - start;
-    const ImageView view = image_view(pyramid_, h, spec_);
+  }
+
+  Status recover_shape(int h, bool fresh, LevelRecord& record) {
+    adapt(h, record);
+    if (Status s = build_gradient_image(h); !s.ok()) return s;
+    tried_.clear();
+    bool added = false;
+    if (!fresh) {
+      if (Status s = add_late_bubbles(record, added); !s.ok()) return s;
+    }
+    for (int round = 0; !stopped_; ++round) {
+      if (Status s = evolve(h, record); !s.ok()) return s;
+      // What is missed on a coarse image the next finer one shows.
+      if (h == 0 && round < kLateRounds) {
+        if (Status s = add_late_bubbles(record, added); !s.ok()) return s;
+        if (added) continue;
+      }
+      if (mesh_.vertex_count() == 0) return {};
+      mesh_.renumber(morton_order(mesh_));
+      evolution_.restart();
+      const LevelVerdict verdict = hooks_.level ? hooks_.level(record) : LevelVerdict::kAccept;
+      stopped_ = verdict == LevelVerdict::kStop;
+      if (verdict != LevelVerdict::kMore) break;
+    }
+    return {};
+  }
+
+  // Until the level has converged, or for max_iterations.
+  Status evolve(int h, LevelRecord& record) {
     int calm = 0;
     double first_energy = 0;
+    record.converged = false;
     for (int i = 1; i <= spec_.max_iterations && !record.converged; ++i) {
-      evolution_.iterate(view, iso_of(h), record.seconds, record.operations);
-      record.iterations = i;
       if (mesh_.vertex_count() == 0) return {};
+      if (Status s = evolution_.iterate(guide_, record.seconds, record.operations); !s.ok()) {
+        return s;
+      }
+      ++record.iterations;
       record.energy = evolution_.energy();
+      record.speed = evolution_.speed();
       first_energy = std::max(first_energy, record.energy);
-      calm = record.energy < spec_.epsilon ? calm + 1 : 0;
+      const bool slow = spec_.calm_speed == 0 || record.speed < spec_.calm_speed;
+      calm = record.energy < spec_.epsilon && slow ? calm + 1 : 0;
       record.converged = i >= kMinIterations && calm >= kCalmIterations;
-      if (progress_ && !progress_(progress(h, record, first_energy))) {
+      if (hooks_.progress && !hooks_.progress(progress(h, record, first_energy))) {
         return {ErrorCode::kCancelled, "cancelled"};
       }
       renumber_if_scattered();
     }
     evolution_.check_all(record.seconds, record.operations);
     record.vertices = mesh_.vertex_count();
-    return verify(view, h, record);
+    return verify(h, record);
+  }
+
+  // `added`: whether something had been missed.
+  Status add_late_bubbles(LevelRecord& record, bool& added) {
+    added = false;
+    if (!spec_.late_bubbles || std::isnan(guide_.iso)) return {};
+    const double start = now();
+    const uint32_t before = mesh_.vertex_count();
+    LateBubbles late;
+    if (Status s = start_late_bubbles(guide_.image, guide_.iso, spec_.inside_above, schedule_,
+                                      simd_, mesh_, tried_, late, record.operations);
+        !s.ok()) {
+      return s;
+    }
+    const auto& mm = user_.millimetres;
+    record.late.bubbles += late.bubbles;
+    record.late.cavities += late.cavities;
+    record.late.volume += late.volume * static_cast<double>(mm[0]) * static_cast<double>(mm[1]) *
+                          static_cast<double>(mm[2]);
+    added = mesh_.vertex_count() != before;
+    if (added) {
+      mesh_.renumber(morton_order(mesh_));
+      evolution_.restart();
+    }
+    record.seconds.topology += now() - start;
+    record.seconds.total += now() - start;
+    return {};
   }
 
   // The guards keep the surface from meeting itself; that they did is tested on every level, and
   // told where they failed.
-  Status verify(const ImageView& view, int h, LevelRecord& record) {
+  Status verify(int h, LevelRecord& record) {
     constexpr int kRepairs = 50;
     for (int i = 0; i < kRepairs; ++i) {
       if (evolution_.embedded()) return {};
-      evolution_.iterate(view, iso_of(h), record.seconds, record.operations);
+      if (Status s = evolution_.iterate(guide_, record.seconds, record.operations); !s.ok()) {
+        return s;
+      }
     }
     return {ErrorCode::kInternal,
             "level " + std::to_string(h) + ": the surface meets itself and could not be parted"};
@@ -187,43 +246,39 @@ class Recovery {
                           std::max(1e-9, std::log(first_energy / spec_.epsilon));
     const double estimate = (before + own * std::clamp(fallen, 0.0, 1.0)) / all;
     fraction_ = std::max(fraction_, std::min(estimate, 1.0));
-    return {
-        h,        levels_, static_cast<int>(record.iterations), mesh_.vertex_count(), record.energy,
-        fraction_};
+    return {h,
+            levels_,
+            static_cast<int>(record.iterations),
+            mesh_.vertex_count(),
+            record.energy,
+            record.speed,
+            fraction_};
   }
 
   const Pyramid& pyramid_;
   const RecoverySpec& spec_;
   const Schedule& schedule_;
-  const RecoveryProgressFn& progress_;
+  SimdTarget simd_;
+  const RecoveryHooks& hooks_;
   Mesh& mesh_;
   Evolution evolution_;
   int levels_;
+  MeshSpace space_;
+  Guide guide_;
+  UserConstraints user_;     // in the space of the level
+  Buffer<Packed> gradient_;  // of the level
+  Buffer<uint8_t> tried_;    // voxels of the level's late bubbles
+  bool stopped_ = false;
   double fraction_ = 0;
 };
 
 }  // namespace
 
-// Voxel i of the unpadded I_0 is voxel i + pad of the padded one and lies at (i + pad + 1/2) of its
-// voxels from the border: (10).
-ImageView image_view(const Pyramid& pyramid, int h, const RecoverySpec& spec) {
-  const PyramidLevel& level = pyramid.levels[static_cast<size_t>(h)];
-  ImageView view;
-  view.data = level.values.data();
-  for (size_t a = 0; a < 3; ++a) {
-    const double voxels_per_voxel = pyramid.levels[0].voxel[a] / level.voxel[a];
-    view.dims[a] = static_cast<int32_t>(level.dims[a]);
-    view.scale[a] = static_cast<float>(voxels_per_voxel / spec.space.step[a]);
-    view.offset[a] = static_cast<float>((spec.pad_voxels + 0.5) * voxels_per_voxel - 0.5);
-  }
-  return view;
-}
-
 Status pyramidal_recover_shape(const Pyramid& pyramid, const RecoverySpec& spec,
                                const Schedule& schedule, SimdTarget simd,
-                               const RecoveryProgressFn& progress, Mesh& mesh,
+                               const RecoveryHooks& hooks, Mesh& mesh,
                                std::vector<LevelRecord>& records) {
-  Recovery recovery(pyramid, spec, schedule, simd, progress, mesh);
+  Recovery recovery(pyramid, spec, schedule, simd, hooks, mesh);
   return recovery.run(records);
 }
 

@@ -20,6 +20,7 @@ enum Resource : uint32_t {
   kStages = 1U << 6,  // force, stage position and velocity, sums of Runge-Kutta
   kDisplacements = 1U << 7,
   kEnergy = 1U << 8,
+  kUserForce = 1U << 9,
 };
 
 // One row of the table of passes. Passes keep their order where one writes what the other reads or

@@ -50,7 +50,7 @@ inline plc_parameters parameters(double iso, int levels) {
 
 inline Surface extract(plc_context* context, const plc_image& image, const plc_parameters& p) {
   plc_surface* surface = nullptr;
-  const plc_status status = plc_extract(context, &image, &p, nullptr, nullptr, &surface);
+  const plc_status status = plc_extract(context, &image, &p, nullptr, &surface);
   INFO(plc_context_message(context));
   REQUIRE(status == PLC_OK);
   return Surface(surface);

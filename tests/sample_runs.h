@@ -81,17 +81,21 @@ inline plc::Model random_model(Random& random) {
 
 // As many bubbles as have room on the coarsest level; none: one bubble around the object.
 inline void choose_bubbles(Run& run, Random& random) {
+  const auto& spacing = run.volume.spacing;
+  const double finest = std::min({spacing[0], spacing[1], spacing[2]});
+  const bool physical = run.recovery.anisotropy == plc::Anisotropy::kPhysical;
   double delta = 1 / plc::kUnitPerDelta;
   for (int h = 0; h < run.pyramid.levels; ++h) delta *= run.pyramid.reduction;
-  auto& r = run.recovery;
+  auto& start = run.recovery.start;
   for (size_t a = 0; a < 3; ++a) {
+    const double step = physical ? spacing[a] / finest : 1;
     // 3.9 delta apart the radius is 1.2 delta.
-    const double room = static_cast<double>(run.volume.dims[a]) * r.space.step[a] / (3.9 * delta);
+    const double room = static_cast<double>(run.volume.dims[a]) * step / (3.9 * delta);
     if (room < 1) return;
-    r.bubbles[a] =
+    start.bubbles[a] =
         static_cast<int>(random.integer(1, std::min(static_cast<int64_t>(room), int64_t{6})));
   }
-  r.init = plc::Init::kBubbles;
+  start.init = plc::Init::kBubbles;
 }
 
 // A dark object in a bright image instead.
@@ -120,10 +124,11 @@ inline Run random_run(uint64_t seed) {
   for (size_t h = 1; h < r.isos.size(); ++h) r.isos[h] = r.isos[h - 1] * 0.65;
   r.model = random_model(random);
   if (random.integer(0, 4) == 0) turn_dark(run);
-  const bool physical = random.integer(0, 2) == 0;
+  constexpr plc::Anisotropy kMethods[] = {plc::Anisotropy::kPhysical, plc::Anisotropy::kMetric,
+                                          plc::Anisotropy::kVoxel};
+  constexpr const char* kMethodNames[] = {"", "mm", "voxels", "metric"};
+  r.anisotropy = random.one_of(kMethods);
   const auto& spacing = run.volume.spacing;
-  const double finest = std::min({spacing[0], spacing[1], spacing[2]});
-  for (size_t a = 0; a < 3; ++a) r.space.step[a] = physical ? spacing[a] / finest : 1;
   if (random.integer(0, 2) == 0) choose_bubbles(run, random);
   constexpr double kEpsilons[] = {1e-4, 1e-5, 5e-6};
   r.epsilon = random.one_of(kEpsilons);
@@ -137,12 +142,13 @@ inline Run random_run(uint64_t seed) {
                 static_cast<unsigned long long>(seed), kind.c_str(), static_cast<int>(d[0]),
                 static_cast<int>(d[1]), static_cast<int>(d[2]), spacing[0], spacing[1], spacing[2],
                 noise_amplitude, run.iso, run.pyramid.levels, run.pyramid.reduction,
-                r.init == plc::Init::kBubble ? "bubble" : "bubbles", r.bubbles[0], r.bubbles[1],
-                r.bubbles[2], physical ? "mm" : "voxels", static_cast<double>(r.model.curvature),
-                static_cast<double>(r.model.spring), static_cast<int>(r.model.rest_length),
-                static_cast<double>(r.model.attraction), static_cast<double>(r.model.mass),
-                static_cast<double>(r.model.damping), static_cast<double>(r.model.time_step),
-                static_cast<double>(r.model.max_move),
+                r.start.init == plc::Init::kBubble ? "bubble" : "bubbles", r.start.bubbles[0],
+                r.start.bubbles[1], r.start.bubbles[2],
+                kMethodNames[static_cast<int>(r.anisotropy)],
+                static_cast<double>(r.model.curvature), static_cast<double>(r.model.spring),
+                static_cast<int>(r.model.rest_length), static_cast<double>(r.model.attraction),
+                static_cast<double>(r.model.mass), static_cast<double>(r.model.damping),
+                static_cast<double>(r.model.time_step), static_cast<double>(r.model.max_move),
                 r.model.bound == plc::Bound::kClamp ? "clamp" : "scale", r.epsilon);
   run.name = name;
   return run;

@@ -49,7 +49,7 @@ Result extract(const samples::Volume& volume, const plc_parameters& parameters, 
     image.spacing[a] = volume.spacing[a];
   }
   plc_surface* surface = nullptr;
-  const plc_status status = plc_extract(context, &image, &parameters, nullptr, nullptr, &surface);
+  const plc_status status = plc_extract(context, &image, &parameters, nullptr, &surface);
   INFO(plc_context_message(context));
   REQUIRE(status == PLC_OK);
   Result result;
@@ -94,9 +94,9 @@ Trace traced(const Run& run, int threads, SimdTarget target) {
     return true;
   };
   std::vector<plc::LevelRecord> records;
-  REQUIRE(
-      plc::pyramidal_recover_shape(pyramid, run.recovery, schedule, target, record, mesh, records)
-          .ok());
+  REQUIRE(plc::pyramidal_recover_shape(pyramid, run.recovery, schedule, target, {record, {}}, mesh,
+                                       records)
+              .ok());
   trace.hashes.push_back(plc::state_hash(mesh));
   return trace;
 }

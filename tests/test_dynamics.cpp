@@ -37,7 +37,10 @@ constexpr float kIso = 0.5F;
 
 void step(Mesh& mesh, plc::Dynamics& dynamics, const Image& image) {
   plc::Seconds seconds;
-  dynamics.step(image.view(), kIso, seconds);
+  plc::Guide guide;
+  guide.image = image.view();
+  guide.iso = kIso;
+  CHECK(dynamics.step(guide, seconds).ok());
   CHECK(seconds.normals >= 0);
   CHECK(mesh.vertex_count() > 0);
 }

@@ -142,7 +142,7 @@ TEST_CASE("choices that are none are refused", "[parameters]") {
     static_assert(sizeof choice == sizeof value);
     std::memcpy(&choice, &value, sizeof value);
   };
-  CHECK(refusal([&](plc_parameters& p) { set(p.init, 2); }) == "init 2: must be a plc_init");
+  CHECK(refusal([&](plc_parameters& p) { set(p.init, 6); }) == "init 6: must be a plc_init");
   CHECK(refusal([&](plc_parameters& p) { set(p.rest_length, 3); }) ==
         "rest length 3: must be a plc_rest_length");
   CHECK(refusal([&](plc_parameters& p) { set(p.bound, 2); }) == "bound 2: must be a plc_bound");
@@ -281,7 +281,7 @@ TEST_CASE("the model is what was asked for, with the sign of the object's side",
   p.bubbles[2] = 7;
   p.epsilon = 1e-4;
   p.max_iterations = 77;
-  const plc::RecoverySpec spec = plc::recovery_spec(p, {1, 1, 1});
+  const plc::RecoverySpec spec = plc::recovery_spec(p);
   CHECK(spec.model.curvature == 0.25F);
   CHECK(spec.model.spring == 0.125F);
   CHECK(spec.model.rest_length == plc::RestLength::kValue);
@@ -292,22 +292,15 @@ TEST_CASE("the model is what was asked for, with the sign of the object's side",
   CHECK(spec.model.time_step == 0.5F);
   CHECK(spec.model.max_move == 0.375F);
   CHECK(spec.model.bound == plc::Bound::kScale);
-  CHECK(spec.init == plc::Init::kBubbles);
-  CHECK(spec.bubbles == std::array{1, 1, 7});
+  CHECK(spec.start.init == plc::Init::kBubbles);
+  CHECK(spec.start.bubbles == std::array{1, 1, 7});
   CHECK(spec.epsilon == 1e-4);
   CHECK(spec.max_iterations == 77);
   CHECK(spec.pad_voxels == plc::kPadVoxels);
   CHECK(spec.inside_above);
   p.inside_below = 1;
-  CHECK(plc::recovery_spec(p, {1, 1, 1}).model.attraction == 2);
-  CHECK_FALSE(plc::recovery_spec(p, {1, 1, 1}).inside_above);
-}
-
-TEST_CASE("mesh space is of voxels, or of mm over the finest spacing", "[parameters]") {
-  plc_parameters p = defaults();
-  CHECK(plc::recovery_spec(p, {2, 1, 4}).space.step == std::array<double, 3>{1, 1, 1});
-  p.anisotropy = PLC_ANISOTROPY_PHYSICAL;
-  CHECK(plc::recovery_spec(p, {2, 0.5, 4}).space.step == std::array<double, 3>{4, 1, 8});
+  CHECK(plc::recovery_spec(p).model.attraction == 2);
+  CHECK_FALSE(plc::recovery_spec(p).inside_above);
 }
 
 TEST_CASE("the pyramid is built with the parameters' window, padding and reduction",

@@ -32,7 +32,7 @@ std::string failure(plc_status expected, const std::function<void(plc_image&)>& 
   if (change_image) change_image(image);
   if (change_parameters) change_parameters(p);
   auto* surface = reinterpret_cast<plc_surface*>(&image);
-  const plc_status status = plc_extract(context.get(), &image, &p, nullptr, nullptr, &surface);
+  const plc_status status = plc_extract(context.get(), &image, &p, nullptr, &surface);
   CHECK(status == expected);
   CHECK(surface == nullptr);
   return plc_context_message(context.get());
@@ -134,12 +134,10 @@ TEST_CASE("NULL for anything that is needed is an error, not a crash", "[pellicl
   const plc_image image = samples::image_of(ball());
   const plc_parameters p = samples::parameters(0.5, 0);
   plc_surface* surface = nullptr;
-  CHECK(plc_extract(nullptr, &image, &p, nullptr, nullptr, &surface) == PLC_INVALID_ARGUMENT);
-  CHECK(plc_extract(context.get(), nullptr, &p, nullptr, nullptr, &surface) ==
-        PLC_INVALID_ARGUMENT);
-  CHECK(plc_extract(context.get(), &image, nullptr, nullptr, nullptr, &surface) ==
-        PLC_INVALID_ARGUMENT);
-  CHECK(plc_extract(context.get(), &image, &p, nullptr, nullptr, nullptr) == PLC_INVALID_ARGUMENT);
+  CHECK(plc_extract(nullptr, &image, &p, nullptr, &surface) == PLC_INVALID_ARGUMENT);
+  CHECK(plc_extract(context.get(), nullptr, &p, nullptr, &surface) == PLC_INVALID_ARGUMENT);
+  CHECK(plc_extract(context.get(), &image, nullptr, nullptr, &surface) == PLC_INVALID_ARGUMENT);
+  CHECK(plc_extract(context.get(), &image, &p, nullptr, nullptr) == PLC_INVALID_ARGUMENT);
   CHECK_THAT(std::string(plc_context_message(context.get())), Contains("must not be NULL"));
   plc_measures measures{};
   CHECK(plc_surface_measure(context.get(), nullptr, PLC_SPACE_LPS, &measures) ==
@@ -222,7 +220,7 @@ TEST_CASE("a context is good for the next call after a failure", "[pellicle]") {
   const plc_image image = samples::image_of(ball());
   plc_parameters p = samples::parameters(7, 0);
   plc_surface* surface = nullptr;
-  CHECK(plc_extract(context.get(), &image, &p, nullptr, nullptr, &surface) == PLC_INVALID_ARGUMENT);
+  CHECK(plc_extract(context.get(), &image, &p, nullptr, &surface) == PLC_INVALID_ARGUMENT);
   CHECK_FALSE(std::string(plc_context_message(context.get())).empty());
   p.iso = 0.5;
   const Surface good = samples::extract(context.get(), image, p);
@@ -253,7 +251,11 @@ TEST_CASE("progress is told after every iteration and may cancel", "[pellicle]")
   };
   Told told;
   plc_surface* surface = nullptr;
-  REQUIRE(plc_extract(context.get(), &image, &p, listen, &told, &surface) == PLC_OK);
+  plc_extras extras;
+  plc_extras_defaults(&extras);
+  extras.progress = listen;
+  extras.progress_user = &told;
+  REQUIRE(plc_extract(context.get(), &image, &p, &extras, &surface) == PLC_OK);
   plc_level_report report{};
   report.struct_size = sizeof report;
   int64_t iterations = 0;
@@ -265,7 +267,7 @@ TEST_CASE("progress is told after every iteration and may cancel", "[pellicle]")
   plc_surface_destroy(surface);
   told = {};
   told.limit = 9;
-  CHECK(plc_extract(context.get(), &image, &p, listen, &told, &surface) == PLC_CANCELLED);
+  CHECK(plc_extract(context.get(), &image, &p, &extras, &surface) == PLC_CANCELLED);
   CHECK(told.calls == 9);
   CHECK(surface == nullptr);
   CHECK(std::string(plc_context_message(context.get())) == "cancelled");
@@ -315,7 +317,7 @@ TEST_CASE("contexts work side by side in threads of their own", "[pellicle]") {
       plc_context* context = nullptr;
       plc_surface* surface = nullptr;
       if (plc_context_create(&options, &context, nullptr, 0) != PLC_OK) return;
-      if (plc_extract(context, &image, &p, nullptr, nullptr, &surface) == PLC_OK) {
+      if (plc_extract(context, &image, &p, nullptr, &surface) == PLC_OK) {
         hashes[i] = plc_surface_hash(surface);
       }
       plc_surface_destroy(surface);

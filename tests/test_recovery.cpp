@@ -32,7 +32,7 @@ Recovered recover(const Run& run, size_t most = 1000000) {
     return r.progress.size() < most;
   };
   r.status = plc::pyramidal_recover_shape(pyramid, run.recovery, schedule, plc::best_simd_target(),
-                                          watch, r.mesh, r.records);
+                                          {watch, {}}, r.mesh, r.records);
   return r;
 }
 
@@ -164,8 +164,8 @@ TEST_CASE("a chain comes out as two rings from one bubble and from many", "[reco
   run.recovery.model.rest_length = plc::RestLength::kZero;
   for (const bool many : {false, true}) {
     if (many) {
-      run.recovery.init = plc::Init::kBubbles;
-      run.recovery.bubbles = {7, 7, 7};
+      run.recovery.start.init = plc::Init::kBubbles;
+      run.recovery.start.bubbles = {7, 7, 7};
       run.recovery.model.curvature = run.recovery.model.spring = 0;
     }
     const Recovered r = recover(run);
@@ -177,18 +177,18 @@ TEST_CASE("a chain comes out as two rings from one bubble and from many", "[reco
   }
 }
 
-TEST_CASE("anisotropic voxels give the same ball in proportions of voxels and of mm",
-          "[recovery]") {
-  for (const bool physical : {false, true}) {
+TEST_CASE("anisotropic voxels give the same ball with each method of 4.4", "[recovery]") {
+  for (const plc::Anisotropy method :
+       {plc::Anisotropy::kPhysical, plc::Anisotropy::kVoxel, plc::Anisotropy::kMetric}) {
     Run run = samples::make_run(
         "ball", samples::sphere_potential(samples::empty_volume({28, 28, 14}, {1, 1, 2}), 0.35),
         0.5, 1);
     run.recovery.model.curvature = 0.1F;
-    if (physical) run.recovery.space.step = {1, 1, 2};
+    run.recovery.anisotropy = method;
     const Recovered r = recover(run);
     REQUIRE(r.status.ok());
     CHECK(samples::euler(r.mesh) == 2);
-    const double to_mm = physical ? 1 : 2;
+    const double to_mm = method == plc::Anisotropy::kPhysical ? 1 : 2;
     CHECK(samples::volume(r.mesh) * to_mm == Approx(sphere_volume(kRadius)).epsilon(0.05));
   }
 }
@@ -239,8 +239,8 @@ TEST_CASE("levels on which the object does not show are passed over", "[recovery
 
 TEST_CASE("more bubbles than the coarsest level has room for are refused", "[recovery]") {
   Run run = ball_run(2);
-  run.recovery.init = plc::Init::kBubbles;
-  run.recovery.bubbles = {30, 30, 30};
+  run.recovery.start.init = plc::Init::kBubbles;
+  run.recovery.start.bubbles = {30, 30, 30};
   const Recovered r = recover(run);
   CHECK(r.status.code() == ErrorCode::kInvalidArgument);
   CHECK_THAT(r.status.message(), Catch::Matchers::Contains("bubbles 30 x 30 x 30"));
@@ -252,11 +252,11 @@ TEST_CASE("mesh space has the voxels of the unpadded image at its integers, on e
       "ball", samples::sphere_potential(samples::empty_volume({21, 26, 33}, {1, 2, 1.5}), 0.3), 0.5,
       3);
   const plc::Pyramid pyramid = samples::pyramid_of(run);
-  plc::RecoverySpec spec = run.recovery;
-  for (const bool physical : {false, true}) {
-    if (physical) spec.space.step = {1, 2, 1.5};
+  for (const plc::Anisotropy method :
+       {plc::Anisotropy::kPhysical, plc::Anisotropy::kVoxel, plc::Anisotropy::kMetric}) {
     for (int h = 0; h <= 3; ++h) {
-      const plc::ImageView view = plc::image_view(pyramid, h, spec);
+      const plc::MeshSpace space = plc::mesh_space(pyramid, h, method);
+      const plc::ImageView view = plc::image_view(pyramid, h, 6, space);
       const plc::PyramidLevel& level = pyramid.levels[static_cast<size_t>(h)];
       for (size_t a = 0; a < 3; ++a) {
         CHECK(view.dims[a] == level.dims[a]);
@@ -264,7 +264,7 @@ TEST_CASE("mesh space has the voxels of the unpadded image at its integers, on e
         for (const double voxel : {-6.0, 0.0, 7.0, 20.0}) {
           const double part = (voxel + 6 + 0.5) / static_cast<double>(run.volume.dims[a] + 12);
           const double expected = part * static_cast<double>(level.dims[a]) - 0.5;
-          const double mesh = voxel * spec.space.step[a];
+          const double mesh = voxel * space.step[a];
           CHECK(static_cast<double>(view.scale[a]) * mesh + static_cast<double>(view.offset[a]) ==
                 Approx(expected).margin(1e-4));
         }

@@ -53,9 +53,12 @@ SurfaceHandle evolve(plc_context* context, const plc_image& image, const Extract
                      const InterruptGuard& interrupt) {
   ProgressLine line(options.quiet);
   Watch watch{line, interrupt};
+  plc_extras extras;
+  plc_extras_defaults(&extras);
+  extras.progress = on_progress;
+  extras.progress_user = &watch;
   plc_surface* surface = nullptr;
-  const plc_status status =
-      plc_extract(context, &image, &options.parameters, on_progress, &watch, &surface);
+  const plc_status status = plc_extract(context, &image, &options.parameters, &extras, &surface);
   if (status == PLC_CANCELLED) return nullptr;
   if (status != PLC_OK) throw failure_of(context, status);
   return SurfaceHandle(surface);

@@ -9,7 +9,12 @@ const Choices<plc_space> kSpaces = {
     {"lps", PLC_SPACE_LPS}, {"ras", PLC_SPACE_RAS}, {"voxel", PLC_SPACE_VOXEL}};
 const Choices<plc_bound> kBounds = {{"clamp", PLC_BOUND_CLAMP}, {"scale", PLC_BOUND_SCALE}};
 const Choices<plc_anisotropy> kAnisotropies = {{"physical", PLC_ANISOTROPY_PHYSICAL},
-                                               {"voxel", PLC_ANISOTROPY_VOXEL}};
+                                               {"voxel", PLC_ANISOTROPY_VOXEL},
+                                               {"metric", PLC_ANISOTROPY_METRIC}};
+const Choices<plc_force> kForces = {
+    {"iso", PLC_FORCE_ISO}, {"gradient", PLC_FORCE_GRADIENT}, {"both", PLC_FORCE_BOTH}};
+const Choices<plc_feature> kFeatures = {{"none", PLC_FEATURE_NONE},
+                                        {"gradient-norm", PLC_FEATURE_GRADIENT_NORM}};
 const Choices<int> kInsides = {{"above", 0}, {"below", 1}};
 
 namespace {
@@ -95,7 +100,7 @@ class Declarations {
   }
 
   void object() {
-    number("--iso", p_.iso, "Value of the surface, in the image's units")->required();
+    number("--iso", p_.iso, "Value of the surface, in the image's units");
     choice("--inside", kInsides, p_.inside_below,
            "The object is where the image is above (a bright object) or below iso");
     text("--level-iso", "V,...", "derived",
@@ -115,6 +120,13 @@ class Declarations {
            "the image's units; by default the outside end of the window");
   }
 
+  void feature() {
+    choice("--feature", kFeatures, p_.feature,
+           "What is taken for the image: itself, or the norm of its gradient per mm, as snakes "
+           "have it; iso, window and pad are values of it");
+    number("--sigma", p_.feature_sigma, "Gaussian before --feature gradient-norm, mm; 0: none");
+  }
+
   void pyramid() {
     text("--levels", "M", "3, fewer for small images",
          "Levels of the pyramid above the full image; 0: direct, without a pyramid",
@@ -126,7 +138,9 @@ class Declarations {
          });
     number("--reduction", p_.reduction, "Reduction from a level to the next, above 1, at most 2");
     choice("--anisotropy", kAnisotropies, p_.anisotropy,
-           "The mesh is regular in mm (physical) or in voxels (voxel)");
+           "How voxels that are no cubes are met (4.4): the mesh is regular in mm (physical), in "
+           "voxels with all its forces (voxel), or in the voxels of each level with its forces in "
+           "mm (metric)");
     text("--init", "bubble|bubbles=NX,NY,NZ", init_text(p_),
          "Start from one bubble around the object, or from a grid of bubbles over the image, each "
          "count 1 .. 256",
@@ -141,7 +155,18 @@ class Declarations {
          "Rest length of edges: zero (shrinks), their mean, or a value in units of delta, the "
          "mesh's resolution",
          [&p = p_](const std::string& s) { read_rest_length(s, p); });
+    choice("--force", kForces, p_.force,
+           "Forces of the image: towards the value iso, along the gradient, or both; with gradient "
+           "alone --iso may be left out");
     number("--attraction", p_.attraction, "|alpha_I|, attraction to the value of the surface, > 0");
+    number("--gradient", p_.gradient,
+           "alpha_gradI, attraction along the gradient in the direction of the normal; negative: "
+           "towards dark");
+    number("--gradient-tangent", p_.gradient_tangent,
+           "beta_gradI, attraction along the gradient in the tangent plane");
+    number("--gradient-bound", p_.gradient_bound,
+           "Norm of the gradient at which its force stops growing, in windows per voxel of a "
+           "level, > 0");
     number("--mass", p_.mass, "Mass of a vertex, > 0");
     number("--damping", p_.damping, "Friction gamma, mass per time, >= 0");
     number("--time-step", p_.time_step, "Time of an iteration, > 0; lowered where unstable");
@@ -150,12 +175,20 @@ class Declarations {
     choice(
         "--bound", kBounds, p_.bound,
         "How movements are bounded: each vertex (clamp) or the time step by the fastest (scale)");
+    number("--calm-speed", p_.calm_speed,
+           "A level has converged only when also no vertex is as fast as this, in units of delta "
+           "per time; 0: not asked");
     number("--epsilon", p_.epsilon,
            "A level has converged when its mean kinetic energy along normals, in units of mass * "
            "(delta / time step)^2, falls below this; above 0, at most 1");
     text("--max-iterations", "N", std::to_string(p_.max_iterations),
-         "Iterations of a level at most, >= 1",
+         "Iterations of a level at most, >= 1; the full image may take as many again after late "
+         "bubbles",
          [&p = p_](const std::string& s) { p.max_iterations = to_integer("--max-iterations", s); });
+    command_.add_flag_callback(
+        "--no-late-bubbles", [&p = p_] { p.late_bubbles = 0; },
+        "Start no bubbles in parts and cavities that a level's surface has missed (the paper's "
+        "behaviour)");
   }
 
   void machine() {
@@ -215,6 +248,7 @@ void add_extract_options(CLI::App& command, ExtractOptions& options) {
   Declarations declare(command, options);
   declare.files();
   declare.object();
+  declare.feature();
   declare.pyramid();
   declare.model();
   declare.machine();

@@ -27,6 +27,8 @@ void add_extract_options(CLI::App& command, ExtractOptions& options);
 extern const Choices<plc_space> kSpaces;
 extern const Choices<plc_bound> kBounds;
 extern const Choices<plc_anisotropy> kAnisotropies;
+extern const Choices<plc_force> kForces;
+extern const Choices<plc_feature> kFeatures;
 extern const Choices<int> kInsides;  // plc_parameters::inside_below
 
 // As --rest-length and --init take them.

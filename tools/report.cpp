@@ -19,11 +19,13 @@ using Json = nlohmann::ordered_json;
 Json parameters_json(const plc_parameters& p, plc_space space) {
   Json isos = Json::array();  // coarse to fine, as --level-iso takes them
   for (int h = p.level_iso_count; h-- > 0;) isos.push_back(p.level_iso[h]);
-  return {{"iso", p.iso},
+  return {{"iso", std::isnan(p.iso) ? Json() : Json(p.iso)},
           {"inside", name_of(p.inside_below, kInsides)},
           {"level_iso", isos},
           {"window", {p.window_low, p.window_high}},
           {"pad", p.pad_value},
+          {"feature", name_of(p.feature, kFeatures)},
+          {"sigma", p.feature_sigma},
           {"levels", p.levels},
           {"reduction", p.reduction},
           {"anisotropy", name_of(p.anisotropy, kAnisotropies)},
@@ -31,14 +33,20 @@ Json parameters_json(const plc_parameters& p, plc_space space) {
           {"curvature", p.curvature},
           {"spring", p.spring},
           {"rest_length", rest_length_text(p)},
+          {"force", name_of(p.force, kForces)},
           {"attraction", p.attraction},
+          {"gradient", p.gradient},
+          {"gradient_tangent", p.gradient_tangent},
+          {"gradient_bound", p.gradient_bound},
           {"mass", p.mass},
           {"damping", p.damping},
           {"time_step", p.time_step},
           {"max_move", p.max_move},
           {"bound", name_of(p.bound, kBounds)},
           {"epsilon", p.epsilon},
+          {"calm_speed", p.calm_speed},
           {"max_iterations", p.max_iterations},
+          {"late_bubbles", p.late_bubbles != 0},
           {"space", name_of(space, kSpaces)}};
 }
 
@@ -61,6 +69,7 @@ Json level_json(const plc_level_report& level) {
           {"vertices", level.vertices},
           {"converged", level.converged != 0},
           {"energy", level.energy},
+          {"speed", level.speed},
           {"seconds",
            {{"topology", level.seconds_topology},
             {"normals", level.seconds_normals},
@@ -74,7 +83,11 @@ Json level_json(const plc_level_report& level) {
             {"axial", level.axial},
             {"tetrahedron", level.tetrahedra},
             {"refinement", level.refinements}}},
-          {"deferred", level.deferred}};
+          {"deferred", level.deferred},
+          {"late",
+           {{"bubbles", level.late_bubbles},
+            {"cavities", level.late_cavities},
+            {"volume", level.late_volume}}}};
 }
 
 Json input_json(const plc_image& image, const plc_surface* surface) {

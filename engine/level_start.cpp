@@ -1,0 +1,177 @@
+#include "engine/level_start.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "engine/conform.h"
+#include "engine/constants.h"
+#include "engine/initial_surface.h"
+#include "engine/iso_surface.h"
+#include "engine/mesh_import.h"
+
+namespace plc {
+
+namespace {
+
+const PyramidLevel& image_of(const LevelImage& level) {
+  return level.pyramid.levels[static_cast<size_t>(level.h)];
+}
+
+ImageView view_of(const LevelImage& level, const Pyramid& pyramid) {
+  return image_view(pyramid, level.h, level.pad, level.space);
+}
+
+// The box of mesh space that the part of the image on the object's side of iso fills; false when it
+// is empty.
+bool object_extent(const LevelImage& level, Extent& box) {
+  const PyramidLevel& image = image_of(level);
+  std::array<int64_t, 3> low = image.dims;
+  std::array<int64_t, 3> high{-1, -1, -1};
+  size_t i = 0;
+  for (int64_t z = 0; z < image.dims[2]; ++z) {
+    for (int64_t y = 0; y < image.dims[1]; ++y) {
+      for (int64_t x = 0; x < image.dims[0]; ++x, ++i) {
+        if (level.inside_above ? image.values[i] < level.iso : image.values[i] > level.iso)
+          continue;
+        const std::array<int64_t, 3> at{x, y, z};
+        for (size_t a = 0; a < 3; ++a) {
+          low[a] = std::min(low[a], at[a]);
+          high[a] = std::max(high[a], at[a]);
+        }
+      }
+    }
+  }
+  const ImageView view = view_of(level, level.pyramid);
+  for (size_t a = 0; a < 3; ++a) {
+    if (high[a] < 0) return false;
+    // Half a voxel more: where the iso-surface may lie.
+    const auto at = [&](double voxel) {
+      return (voxel - static_cast<double>(view.offset[a])) / static_cast<double>(view.scale[a]);
+    };
+    box.low[a] = at(static_cast<double>(low[a]) - 0.5);
+    box.high[a] = at(static_cast<double>(high[a]) + 0.5);
+  }
+  return true;
+}
+
+// What the input image fills, without its padding.
+Extent image_extent(const LevelImage& level) {
+  Extent box;
+  for (size_t a = 0; a < 3; ++a) {
+    const auto voxels =
+        static_cast<double>(level.pyramid.levels[0].dims[a] - int64_t{2} * level.pad);
+    box.low[a] = -0.5 * level.space.step[a];
+    box.high[a] = (voxels - 0.5) * level.space.step[a];
+  }
+  return box;
+}
+
+std::string name_of(const Seed& seed) {
+  char line[120];
+  std::snprintf(line, sizeof line, "seed at voxel (%.6g, %.6g, %.6g)", seed.centre[0],
+                seed.centre[1], seed.centre[2]);
+  return line;
+}
+
+// In mesh units; spheres of mm are ellipsoids where the mesh lives in voxels.
+struct Ellipsoid {
+  Vec3 centre, radii;
+};
+
+Ellipsoid ellipsoid_of(const Seed& seed, const MeshSpace& space) {
+  const auto scaled = [&](const std::array<double, 3>& p) {
+    return Vec3{static_cast<float>(p[0] * space.step[0]), static_cast<float>(p[1] * space.step[1]),
+                static_cast<float>(p[2] * space.step[2])};
+  };
+  return {scaled(seed.centre), scaled(seed.radii)};
+}
+
+// Whether two ellipsoids with parallel axes may be nearer than `gap`: grown by half of it, the
+// Minkowski sum of both lies within the ellipsoid of the summed radii.
+bool near(const Ellipsoid& a, const Ellipsoid& b, float gap) {
+  const Vec3 way = b.centre - a.centre;
+  const Vec3 reach = a.radii + b.radii + Vec3{gap, gap, gap};
+  return squared({way.x / reach.x, way.y / reach.y, way.z / reach.z}) < 1;
+}
+
+Status make_seeds(const StartSpec& spec, const LevelImage& level, double delta,
+                  const Executor& executor, Mesh& mesh) {
+  const auto unit = static_cast<float>(delta);
+  mesh.delta = delta;
+  std::vector<Ellipsoid> made;
+  for (const Seed& seed : spec.seeds) {
+    const Ellipsoid e = ellipsoid_of(seed, level.space);
+    if (std::min({e.radii.x, e.radii.y, e.radii.z}) < kSmallestBubble * unit) {
+      char line[120];
+      std::snprintf(line, sizeof line,
+                    ": too small for level %d, where the smallest radius is %.3g mesh units; use "
+                    "fewer levels or larger seeds",
+                    level.h, static_cast<double>(kSmallestBubble * unit));
+      return {ErrorCode::kInvalidArgument, name_of(seed) + line};
+    }
+    for (size_t i = 0; i < made.size(); ++i) {
+      if (near(made[i], e, kBubbleGap * unit)) {
+        return {ErrorCode::kInvalidArgument, name_of(seed) + ": touches the " +
+                                                 name_of(spec.seeds[i]) + " on level " +
+                                                 std::to_string(level.h)};
+      }
+    }
+    made.push_back(e);
+    append_bubble(mesh, e.centre, e.radii, false, executor);
+  }
+  return {};
+}
+
+Status make_mesh(const StartSpec& spec, const LevelImage& level, const Executor& executor,
+                 Mesh& mesh) {
+  std::vector<double> xyz(spec.xyz.size());
+  for (size_t i = 0; i < xyz.size(); ++i) xyz[i] = spec.xyz[i] * level.space.step[i % 3];
+  return import_mesh(xyz.data(), static_cast<int64_t>(xyz.size() / 3), spec.abc.data(),
+                     static_cast<int64_t>(spec.abc.size() / 3), executor, mesh);
+}
+
+// An image without the object is no error: the next finer level may show it.
+Status make_iso(const ImageView& view, float iso, bool inside_above, const Executor& executor,
+                Mesh& mesh) {
+  Status s = iso_surface(view, iso, inside_above, executor, mesh);
+  return s.code() == ErrorCode::kInvalidData ? Status() : s;
+}
+
+}  // namespace
+
+Status start_surface(const StartSpec& spec, const LevelImage& level, double delta,
+                     const Schedule& schedule, SimdTarget simd, Mesh& mesh,
+                     OperationCounts& counts) {
+  mesh.clear();
+  Extent box;
+  Status made;
+  switch (spec.init) {
+    case Init::kBubble:
+      if (std::isnan(level.iso)) box = image_extent(level);
+      if (std::isnan(level.iso) || object_extent(level, box))
+        make_bubble(mesh, box, delta, schedule);
+      return {};
+    case Init::kBubbles:
+      return make_bubbles(mesh, image_extent(level), spec.bubbles, delta, schedule);
+    case Init::kSeeds:
+      return make_seeds(spec, level, delta, schedule, mesh);
+    case Init::kIso:
+      made = make_iso(view_of(level, level.pyramid), level.iso, level.inside_above, schedule, mesh);
+      break;
+    case Init::kMask:
+      made = make_iso(view_of(level, spec.mask), 0.5F, true, schedule, mesh);
+      break;
+    case Init::kMesh:
+      made = make_mesh(spec, level, schedule, mesh);
+      break;
+  }
+  if (!made.ok() || mesh.vertex_count() == 0) return made;
+  Status s = conform(mesh, delta, schedule, simd, counts);
+  if (s.code() != ErrorCode::kInvalidData || spec.init == Init::kMesh) return s;
+  mesh.clear();  // nothing that this level resolves
+  return {};
+}
+
+}  // namespace plc

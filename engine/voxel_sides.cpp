@@ -1,0 +1,109 @@
+#include "engine/voxel_sides.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace plc {
+
+namespace {
+
+// Rows lie this far beside the voxel centres, in voxels: vertices of meshes that were laid out on
+// the voxel grid lie on the centres, and a row through a vertex has no parity.
+constexpr double kBesideY = 0.000913;
+constexpr double kBesideZ = 0.000617;
+
+using Point = std::array<double, 3>;
+
+// Twice the signed area of (a, b, row) in the plane yz. The ends of an edge come in one order
+// whichever face asks: both faces of an edge agree on which side of it the row is.
+double side(const Point& a, const Point& b, double y, double z) {
+  if (b < a) return -side(b, a, y, z);
+  return (b[1] - a[1]) * (z - a[2]) - (b[2] - a[2]) * (y - a[1]);
+}
+
+class Rows {
+ public:
+  Rows(const Mesh& mesh, const ImageView& image, Buffer<uint8_t>& flips)
+      : mesh_(mesh), image_(image), flips_(flips) {}
+
+  // Flips the first voxel behind each crossing of the face with a row.
+  void cross(uint32_t u, uint32_t v, uint32_t w) {
+    const std::array<Point, 3> p{voxel(u), voxel(v), voxel(w)};
+    const auto [y0, y1] = range(p, 1, kBesideY);
+    const auto [z0, z1] = range(p, 2, kBesideZ);
+    for (int64_t k = z0; k <= z1; ++k) {
+      for (int64_t j = y0; j <= y1; ++j) {
+        cross_row(p, j, k);
+      }
+    }
+  }
+
+ private:
+  Point voxel(uint32_t v) const {
+    const Packed& p = mesh_.packed[v];
+    const float at[3] = {p.x, p.y, p.z};
+    Point c;
+    for (size_t a = 0; a < 3; ++a) {
+      c[a] = static_cast<double>(image_.scale[a]) * static_cast<double>(at[a]) +
+             static_cast<double>(image_.offset[a]);
+    }
+    return c;
+  }
+
+  // Rows of the image within the face's extent on an axis.
+  std::pair<int64_t, int64_t> range(const std::array<Point, 3>& p, size_t axis,
+                                    double beside) const {
+    const auto [low, high] = std::minmax({p[0][axis], p[1][axis], p[2][axis]});
+    return {
+        std::max<int64_t>(0, static_cast<int64_t>(std::ceil(low - beside))),
+        std::min<int64_t>(image_.dims[axis] - 1, static_cast<int64_t>(std::floor(high - beside)))};
+  }
+
+  void cross_row(const std::array<Point, 3>& p, int64_t j, int64_t k) {
+    const double y = static_cast<double>(j) + kBesideY;
+    const double z = static_cast<double>(k) + kBesideZ;
+    const double a = side(p[1], p[2], y, z);
+    const double b = side(p[2], p[0], y, z);
+    const double c = side(p[0], p[1], y, z);
+    const bool within = (a > 0 && b > 0 && c > 0) || (a < 0 && b < 0 && c < 0);
+    if (!within) return;
+    const double x = (a * p[0][0] + b * p[1][0] + c * p[2][0]) / (a + b + c);
+    const auto first = static_cast<int64_t>(std::ceil(std::max(x, 0.0)));
+    if (first >= image_.dims[0]) return;
+    flips_[static_cast<size_t>((k * image_.dims[1] + j) * image_.dims[0] + first)] ^= 1;
+  }
+
+  const Mesh& mesh_;
+  const ImageView& image_;
+  Buffer<uint8_t>& flips_;
+};
+
+}  // namespace
+
+void voxel_sides(const Mesh& mesh, const ImageView& image, const Executor& executor,
+                 Buffer<uint8_t>& inside) {
+  const auto row = static_cast<size_t>(image.dims[0]);
+  const auto rows = static_cast<size_t>(image.dims[1]) * static_cast<size_t>(image.dims[2]);
+  inside.resize(row * rows);
+  std::fill(inside.begin(), inside.end(), uint8_t{0});
+  Rows crossings(mesh, image, inside);
+  for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    const uint32_t valence = mesh.valence(v);
+    for (uint32_t k = 0; k < valence; ++k) {
+      const uint32_t a = mesh.neighbor(v, k);
+      const uint32_t b = mesh.neighbor(v, k + 1 == valence ? 0 : k + 1);
+      if (v < a && v < b) crossings.cross(v, a, b);
+    }
+  }
+  executor.run(static_cast<size_t>(image.dims[2]), [&](size_t z) {
+    for (size_t y = 0; y < static_cast<size_t>(image.dims[1]); ++y) {
+      uint8_t* at = inside.data() + (z * static_cast<size_t>(image.dims[1]) + y) * row;
+      uint8_t parity = 0;
+      for (size_t x = 0; x < row; ++x) at[x] = parity ^= at[x];
+    }
+  });
+}
+
+}  // namespace plc
