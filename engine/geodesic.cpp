@@ -18,6 +18,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Intervals shorter than this part of their edge are dropped: what they would reach is reached by
 // the ends of their neighbours, with the square of this as the error.
 constexpr double kNarrow = 1e-13;
+// Two windows of the same unfolded vertex meet in the path to a corner; which of them is nearer,
+// and on which side its path is, is rounding then. Crossings nearer to each other than this part of
+// the edge are not told apart: both windows go on to both sides.
+constexpr double kSame = 1e-8;
 
 // Paths that come over the edge opposite to `corner` into its face. x runs along the edge from the
 // corner's next to its previous one, y into the face.
@@ -183,8 +187,8 @@ class Propagation {
       if (distance < best.distance) {
         best = {distance, apex};
       } else {
-        left = apex <= best.x;
-        right = apex >= best.x;
+        left = apex <= best.x + kSame * f.length;
+        right = apex >= best.x - kSame * f.length;
       }
     }
     if (left) turn_left(w, f, through, false);

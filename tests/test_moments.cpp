@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "tests/sample_implicit.h"
 #include "tests/sample_shapes.h"
 
 namespace {
@@ -102,6 +103,24 @@ TEST_CASE("a torus's moments converge to the closed forms with order two", "[mom
     CHECK(s.whole.genus == 1);
   }
   errors.check_second_order(sizes);
+}
+
+TEST_CASE("a double torus has genus 2 and converges to its volume with order two", "[moments]") {
+  const double volume = samples::double_torus_volume();
+  std::vector<double> sizes, errors, areas;
+  for (const double size : {1.0 / 17, 1.0 / 34, 1.0 / 68}) {
+    const ShapeMeasures s = shape(samples::double_torus(size));
+    REQUIRE(s.components.size() == 1);
+    CHECK(s.whole.genus == 2);
+    CHECK(s.whole.euler == -2);
+    sizes.push_back(size);
+    errors.push_back(std::abs(s.whole.volume - volume));
+    areas.push_back(s.whole.area);
+    for (int k = 0; k < 3; ++k) CHECK(std::abs(s.whole.centroid[k]) < size * size / 10);
+    CHECK(s.whole.principal_axes[0] == Approx(1).epsilon(1e-3));  // the long side
+  }
+  CHECK(samples::order_of(sizes, errors) == Approx(2).margin(0.25));
+  CHECK(areas[2] - areas[1] < (areas[1] - areas[0]) / 2.5);
 }
 
 TEST_CASE("a box has its moments exactly, and its axes are those it was turned to", "[moments]") {
