@@ -15,10 +15,10 @@ struct Scalars {
 };
 
 struct TriangleMesh {
-  std::vector<double> xyz;       // three per vertex
-  std::vector<uint32_t> abc;     // three per face
-  std::vector<float> normals;    // three per vertex, or none
-  std::vector<Scalars> scalars;  // written, not read
+  std::vector<double> xyz;         // three per vertex
+  std::vector<uint32_t> abc;       // three per face
+  std::vector<float> normals;      // three per vertex, or none
+  std::vector<Scalars> scalars{};  // written, not read
 };
 
 // By suffix. Polygons are fan-triangulated; the corners of an STL are welded where they coincide
