@@ -160,7 +160,7 @@ void find_intersections(const double* xyz, const uint32_t* abc, const FaceTree& 
 
 Status check_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
                   const Executor& executor, plc_check& check) {
-  const Status status = check_mesh_input(xyz, vertex_count, abc, face_count, executor);
+  Status status = check_mesh_input(xyz, vertex_count, abc, face_count, executor);
   if (!status.ok()) return status;
   const auto vertices = static_cast<size_t>(vertex_count);
   const auto faces = static_cast<size_t>(face_count);

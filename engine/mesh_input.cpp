@@ -85,7 +85,7 @@ Status check_values(const double* xyz, size_t vertex_count, const uint32_t* abc,
 
 Status check_mesh_input(const double* xyz, int64_t vertex_count, const uint32_t* abc,
                         int64_t face_count, const Executor& executor) {
-  const Status status = check_counts(xyz, vertex_count, abc, face_count);
+  Status status = check_counts(xyz, vertex_count, abc, face_count);
   if (!status.ok()) return status;
   return check_values(xyz, static_cast<size_t>(vertex_count), abc, static_cast<size_t>(face_count),
                       executor);

@@ -53,6 +53,10 @@ std::string rounded(double value) {
   return text;
 }
 
+std::string range(double low, double high) {
+  return std::isnan(low) ? rounded(low) : rounded(low) + " .. " + rounded(high);
+}
+
 std::string triple(const double* x) {
   if (std::isnan(x[0])) return "not defined";
   return rounded(x[0]) + ", " + rounded(x[1]) + ", " + rounded(x[2]);
@@ -144,12 +148,10 @@ void print_measured(const Measured& m) {
   print_shape(m.whole);
   if (m.curvature) {
     const CurvatureSummary& c = *m.curvature;
-    row("mean curvature",
-        rounded(c.mean_low) + " .. " + rounded(c.mean_high) + ", average " +
-            rounded(c.mean_average),
-        "1/mm");
-    row("Gaussian curvature", rounded(c.gaussian_low) + " .. " + rounded(c.gaussian_high) +
-                                  " 1/mm2, integral " + rounded(c.gaussian_integral));
+    row("mean curvature", range(c.mean_low, c.mean_high), "1/mm");
+    row("  average", rounded(c.mean_average), "1/mm");
+    row("Gaussian curvature", range(c.gaussian_low, c.gaussian_high), "1/mm2");
+    row("  integral", rounded(c.gaussian_integral));
   }
   if (m.geodesic) {
     const GeodesicSummary& g = *m.geodesic;
