@@ -252,7 +252,7 @@ says "report" '"hash": "[0-9a-f]{16}"' out/r.json
 works "render" 0 "$pellicle" render surface.ply --size 64 -o out/picture.png
 works "measure" 0 "$pellicle" measure tetra.off --curvature --geodesic 0,0,13 --distance surface.ply \
   -o out/m.vtp --json out/m.json
-says "measure" "^area +78.594 mm2" stdout
+says "measure" "^area +78.5941 mm2" stdout
 says "measure" "^volume +24 mm3" stdout
 says "measure" "^centroid +0.75, 1, 3 mm" stdout
 says "measure" "^  integral +12.5664$" stdout

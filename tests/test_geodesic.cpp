@@ -128,6 +128,20 @@ TEST_CASE("on a flat sheet the distances are straight lines, from any vertex", "
   }
 }
 
+TEST_CASE("on a large sheet of thin or slanted triangles the distances are straight lines",
+          "[geodesic]") {
+  for (const double slant : {0.0, 60.0}) {
+    Soup m = samples::sheet(60, 0);
+    for (size_t i = 0; i < m.xyz.size(); i += 3) {
+      m.xyz[i] = 40 * m.xyz[i] + slant * m.xyz[i + 1];
+    }
+    const std::vector<double> d = distances(m, 5 * 61 + 7);
+    for (size_t v = 0; v < d.size(); ++v) {
+      CHECK(std::abs(d[v] - apart(m, 5 * 61 + 7, v)) < 1e-12);
+    }
+  }
+}
+
 TEST_CASE("on a sheet of random obtuse triangles the distances are straight lines", "[geodesic]") {
   Soup m = samples::sheet(16, 0);
   std::mt19937 bits(3);
@@ -170,6 +184,19 @@ TEST_CASE("a division of the faces changes no distance", "[geodesic]") {
       const std::vector<double> a = distances(coarse, source), b = distances(fine, source);
       for (size_t v = 0; v < a.size(); ++v) CHECK(std::abs(a[v] - b[v]) < 1e-12);
     }
+  }
+}
+
+TEST_CASE("a division of a rough terrain with a hole changes no distance", "[geodesic]") {
+  std::mt19937 bits(8);
+  std::uniform_real_distribution<double> height(0, 0.15);
+  Soup coarse = samples::sheet(14, 0);
+  for (size_t i = 2; i < coarse.xyz.size(); i += 3) coarse.xyz[i] = height(bits);
+  coarse.abc.erase(coarse.abc.begin() + 6 * (14 * 6 + 5), coarse.abc.begin() + 6 * (14 * 6 + 9));
+  const Soup fine = divided(coarse);
+  for (const uint32_t source : {0U, 107U, 224U}) {
+    const std::vector<double> a = distances(coarse, source), b = distances(fine, source);
+    for (size_t v = 0; v < a.size(); ++v) CHECK(std::abs(a[v] - b[v]) < 1e-12);
   }
 }
 
