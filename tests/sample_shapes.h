@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "pyramid/executor.h"
@@ -20,6 +21,12 @@ class ReverseExecutor final : public plc::Executor {
     for (size_t i = tasks; i-- > 0;) body(i);
   }
 };
+
+// To compare bit by bit, NaN with NaN too.
+template <typename T>
+std::string bytes_of(const T& value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
 
 // The order of convergence: the slope of log(error) over log(size), by least squares.
 inline double order_of(const std::vector<double>& sizes, const std::vector<double>& errors) {

@@ -2,15 +2,14 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <map>
 #include <random>
 
 #include "tests/sample_shapes.h"
 
 namespace {
 
-using samples::kPi;
 using samples::Soup;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
