@@ -276,8 +276,9 @@ PLC_API plc_status plc_check_mesh(plc_context* context, const double* xyz, int64
 typedef struct plc_component_measures {
   size_t struct_size;
   int64_t first_face;      /* the smallest face of it; 0 for all together */
-  int64_t vertices, faces; /* a vertex where a component touches itself counts again */
-  int64_t euler;           /* V - E + F */
+  int64_t vertices, faces; /* a vertex where a component touches itself counts again in it, one of
+                              no face counts in all together only */
+  int64_t euler;           /* V - E + F, of the faces and their vertices */
   int64_t genus; /* -1 unless closed and consistently oriented; the sum for all together */
   double area;
   double volume; /* > 0 when faces are outward; NAN unless each edge is run as often one way as

@@ -133,12 +133,12 @@ Measured measure(plc_context* context, TriangleMesh& mesh, const MeasureOptions&
   Measured m{};
   m.mesh = options.mesh;
   m.whole.struct_size = sizeof m.whole;
-  m.components.resize(static_cast<size_t>(options.components));
-  require(context, plc_mesh_component_measures(
-                       context, mesh.xyz.data(), vertices_of(mesh), mesh.abc.data(), faces_of(mesh),
-                       &m.whole, m.components.data(), options.components, &m.component_count));
-  m.components.resize(
-      static_cast<size_t>(std::min<int64_t>(options.components, m.component_count)));
+  const int64_t capacity = std::min<int64_t>(options.components, faces_of(mesh));
+  m.components.resize(static_cast<size_t>(capacity));
+  require(context, plc_mesh_component_measures(context, mesh.xyz.data(), vertices_of(mesh),
+                                               mesh.abc.data(), faces_of(mesh), &m.whole,
+                                               m.components.data(), capacity, &m.component_count));
+  m.components.resize(static_cast<size_t>(std::min(capacity, m.component_count)));
   if (options.curvature) m.curvature = measure_curvature(context, mesh);
   if (options.geodesic_point || options.geodesic_vertex) {
     m.geodesic = measure_geodesic(context, mesh, source_of(context, mesh, options));
