@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "engine/predicates.h"
 #include "pyramid/buffer.h"
@@ -35,6 +36,12 @@ class FaceTree {
   // Calls visit(f) for every face whose box the segment from s to e may meet.
   template <typename Visit>
   void along_segment(const Point3& s, const Point3& e, const Visit& visit) const;
+
+  // The least of `limit` and squared(f) over the faces f: squared() must tell the squared distance
+  // from p to face f. It is asked for faces alone whose box is nearer than the least so far, boxes
+  // near p first.
+  template <typename Squared>
+  double nearest(const Point3& p, double limit, const Squared& squared) const;
 
  private:
   // Doubles, as given: floats would have to be scaled to the mesh, and one far vertex would then
@@ -68,6 +75,16 @@ class FaceTree {
   static Box box_of(const Leaf& leaf, uint32_t k) {
     return {{leaf.low[0][k], leaf.low[1][k], leaf.low[2][k]},
             {leaf.high[0][k], leaf.high[1][k], leaf.high[2][k]}};
+  }
+  static double squared_distance(const Box& box, const Point3& p) {
+    const double at[3] = {p.x, p.y, p.z};
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double below = box.low[axis] - at[axis], above = at[axis] - box.high[axis];
+      const double off = below > 0 ? below : above > 0 ? above : 0;
+      sum += off * off;
+    }
+    return sum;
   }
   template <typename Pair>
   static void leaf_pairs(const Leaf& leaf, uint32_t k, const Leaf& other, uint32_t from,
@@ -165,6 +182,45 @@ void FaceTree::along_segment(const Point3& s, const Point3& e, const Visit& visi
       if (meets(box_of(leaf, k))) visit(leaf.face[k]);
     }
   }
+}
+
+template <typename Squared>
+double FaceTree::nearest(const Point3& p, double limit, const Squared& squared) const {
+  // A box's distance and a face's are rounded in different ways: a box is passed over only where it
+  // is farther by more than that.
+  constexpr double kMargin = 1 - 1e-14;
+  struct Entry {
+    uint32_t node;
+    double squared;
+  };
+  constexpr size_t kMaxDepth = 34;  // a node and its sibling per level of at most 2^32 leaves
+  Entry stack[2 * kMaxDepth];
+  size_t size = 0;
+  const auto push = [&](uint32_t node) {
+    stack[size++] = {node, squared_distance(nodes_[node].box, p) * kMargin};
+  };
+  if (!nodes_.empty()) push(0);
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (!(entry.squared < limit)) continue;
+    const Node& node = nodes_[entry.node];
+    if (node.leaf_count > 1) {
+      push(entry.node + 2 * (node.leaf_count / 2));
+      push(entry.node + 1);
+      if (stack[size - 1].squared > stack[size - 2].squared) {
+        std::swap(stack[size - 1], stack[size - 2]);
+      }
+      continue;
+    }
+    const Leaf& leaf = leaves_[node.first_leaf];
+    const size_t first = node.first_leaf * static_cast<size_t>(kLeafFaces);
+    for (uint32_t k = 0; k < kLeafFaces && first + k < count_; ++k) {
+      if (!(squared_distance(box_of(leaf, k), p) * kMargin < limit)) continue;
+      const double found = squared(leaf.face[k]);
+      limit = found < limit ? found : limit;
+    }
+  }
+  return limit;
 }
 
 }  // namespace plc

@@ -1,34 +1,15 @@
 #include "engine/measures.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "engine/blocks.h"
+#include "engine/double3.h"
 #include "pyramid/buffer.h"
 
 namespace plc {
 namespace {
 
 constexpr size_t kFaceBlock = 4096;
-
-struct Vector {
-  double x, y, z;
-};
-
-template <typename Real>
-Vector difference(const Real* p, const Real* q) {
-  return {static_cast<double>(p[0]) - static_cast<double>(q[0]),
-          static_cast<double>(p[1]) - static_cast<double>(q[1]),
-          static_cast<double>(p[2]) - static_cast<double>(q[2])};
-}
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-double dot(const Vector& a, const Vector& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 
 struct FaceMeasures {
   double twice_area;
@@ -49,8 +30,8 @@ std::vector<ComponentMeasures> component_measures(const Real* xyz, const uint32_
     for (size_t f = begin; f < end; ++f) {
       const size_t first = topology.components[topology.component[f]].first_face;
       const Real *a = corner(3 * f), *b = corner(3 * f + 1), *c = corner(3 * f + 2);
-      const Vector normal = cross(difference(b, a), difference(c, a));
-      faces[f] = {std::sqrt(dot(normal, normal)), dot(normal, difference(a, corner(3 * first)))};
+      const Double3 normal = cross(difference(b, a), difference(c, a));
+      faces[f] = {length(normal), dot(normal, difference(a, corner(3 * first)))};
     }
   });
   std::vector<ComponentMeasures> measures;

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include "engine/blocks.h"
 #include "engine/face_tree.h"
 #include "engine/measures.h"
+#include "engine/mesh_input.h"
 #include "engine/mesh_topology.h"
 #include "engine/nesting.h"
 #include "engine/self_intersection.h"
@@ -21,75 +20,6 @@ namespace {
 
 constexpr size_t kBlock = 8192;
 constexpr double kDegrees = 57.29577951308232;
-
-// ---- input ----------------------------------------------------------------------------------
-
-// The smallest i in [0, count) that is bad, or count.
-template <typename Bad>
-size_t find_first(const Executor& executor, size_t count, const Bad& bad) {
-  std::vector<size_t> first(block_count(count, kBlock), count);
-  run_blocks(executor, count, kBlock, [&](size_t block, size_t begin, size_t end) {
-    for (size_t i = begin; i < end && first[block] == count; ++i) {
-      if (bad(i)) first[block] = i;
-    }
-  });
-  for (const size_t i : first) {
-    if (i != count) return i;
-  }
-  return count;
-}
-
-bool usable(double x) {
-  const double magnitude = std::abs(x);  // comparisons are false for NaN
-  return x == 0 || (magnitude >= kCoordinateMin && magnitude <= kCoordinateMax);
-}
-
-std::string text(double x) {
-  char buffer[40];
-  std::snprintf(buffer, sizeof buffer, "%.17g", x);
-  return buffer;
-}
-
-Status check_counts(const double* xyz, int64_t vertex_count, const uint32_t* abc,
-                    int64_t face_count) {
-  constexpr int64_t kMaxVertices = int64_t{1} << 32;
-  const auto error = [](const std::string& message) {
-    return Status(ErrorCode::kInvalidArgument, message);
-  };
-  if (vertex_count < 0 || vertex_count > kMaxVertices) {
-    return error("the mesh has " + std::to_string(vertex_count) + " vertices, expected 0 to " +
-                 std::to_string(kMaxVertices));
-  }
-  if (face_count < 0 || face_count > kMaxFaces) {
-    return error("the mesh has " + std::to_string(face_count) + " faces, expected 0 to " +
-                 std::to_string(kMaxFaces));
-  }
-  if (vertex_count > 0 && xyz == nullptr) return error("the mesh has vertices but no coordinates");
-  if (face_count > 0 && abc == nullptr) return error("the mesh has faces but no indices");
-  return {};
-}
-
-Status check_values(const double* xyz, size_t vertex_count, const uint32_t* abc, size_t face_count,
-                    const Executor& executor) {
-  const size_t value =
-      find_first(executor, 3 * vertex_count, [&](size_t i) { return !usable(xyz[i]); });
-  if (value != 3 * vertex_count) {
-    return {ErrorCode::kInvalidData,
-            "vertex " + std::to_string(value / 3) + ": " + "xyz"[value % 3] + " is " +
-                text(xyz[value]) +
-                (std::isfinite(xyz[value]) ? ", expected 0 or a magnitude from 1e-70 to 1e+70"
-                                           : ", expected a finite number")};
-  }
-  const size_t corner =
-      find_first(executor, 3 * face_count, [&](size_t i) { return abc[i] >= vertex_count; });
-  if (corner != 3 * face_count) {
-    return {ErrorCode::kInvalidData,
-            "face " + std::to_string(corner / 3) + ": corner " + std::to_string(corner % 3) +
-                " is vertex " + std::to_string(abc[corner]) + ", expected an index below " +
-                std::to_string(vertex_count)};
-  }
-  return {};
-}
 
 // ---- what is counted and measured -----------------------------------------------------------
 
@@ -230,12 +160,10 @@ void find_intersections(const double* xyz, const uint32_t* abc, const FaceTree& 
 
 Status check_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
                   const Executor& executor, plc_check& check) {
-  Status status = check_counts(xyz, vertex_count, abc, face_count);
+  Status status = check_mesh_input(xyz, vertex_count, abc, face_count, executor);
   if (!status.ok()) return status;
   const auto vertices = static_cast<size_t>(vertex_count);
   const auto faces = static_cast<size_t>(face_count);
-  status = check_values(xyz, vertices, abc, faces, executor);
-  if (!status.ok()) return status;
 
   plc_check c{};
   c.struct_size = check.struct_size;

@@ -23,19 +23,12 @@
 
 namespace plc {
 
-// Coordinates are 0 or within these magnitudes: the predicates are exact on them and neither areas
-// nor volumes over- or underflow.
-inline constexpr double kCoordinateMin = 1e-70;
-inline constexpr double kCoordinateMax = 1e70;
-
 // plc_check::self_intersections stops counting here: more take longer than anyone waits for and say
 // no more. first_intersection is then one of those counted.
 inline constexpr int64_t kMaxIntersections = 1000000;
 
-// xyz: three values per vertex; abc: three indices per face; NULL only where there are none. At
-// most 2^32 vertices and kMaxFaces faces. kInvalidArgument for impossible counts, kInvalidData for
-// a value or an index out of range, with a message that names the first one; check is then
-// unchanged. Otherwise all of it but struct_size is written. The same bits for any executor.
+// Input and errors as check_mesh_input() has them; check is unchanged after an error. Otherwise all
+// of it but struct_size is written. The same bits for any executor.
 Status check_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
                   const Executor& executor, plc_check& check);
 

@@ -5,19 +5,12 @@
 #include <numeric>
 
 #include "engine/blocks.h"
+#include "engine/vertex_corners.h"
 
 namespace plc {
 namespace {
 
 constexpr size_t kVertexBlock = 4096;
-
-bool has_repeated_vertex(const uint32_t* ids) {
-  return ids[0] == ids[1] || ids[1] == ids[2] || ids[2] == ids[0];
-}
-
-uint32_t next_corner(uint32_t corner) {
-  return corner % 3 == 2 ? corner - 2 : corner + 1;
-}
 
 // Disjoint sets; the smallest member stands for the set.
 class Sets {
@@ -143,7 +136,7 @@ MeshTopology mesh_topology(const uint32_t* abc, size_t face_count, size_t vertex
                 if (end - use == 2) join_umbrellas(abc, use[0].corner, use[1].corner, corners);
               });
   number_components(face_count, faces, m);
-  edges.visit(0, vertex_count, [&](uint32_t, uint32_t, const EdgeUse* use, const EdgeUse* end) {
+  edges.visit(0, vertex_count, [&](uint32_t low, uint32_t, const EdgeUse* use, const EdgeUse* end) {
     ComponentTopology& component = m.components[m.component[use->corner / 3]];
     const auto count = end - use;
     const bool same_direction = count == 2 && abc[use[0].corner] == abc[use[1].corner];
@@ -154,6 +147,9 @@ MeshTopology mesh_topology(const uint32_t* abc, size_t face_count, size_t vertex
     m.odd_edges += count > 2 && count % 2 == 1 ? 1 : 0;
     m.inconsistent_edges += same_direction ? 1 : 0;
     if (count != 2 || same_direction) component.closed_oriented = false;
+    const auto upwards =
+        std::count_if(use, end, [&](const EdgeUse& u) { return abc[u.corner] == low; });
+    if (2 * upwards != count) component.encloses = false;
   });
   count_vertices(abc, face_count, vertex_count, corners, m);
   count_valences(valence, m);

@@ -47,6 +47,7 @@ struct ComponentTopology {
   int64_t edges = 0;
   int64_t vertices = 0;  // umbrellas: a vertex where the component touches itself counts again
   bool closed_oriented = true;  // every edge has two faces that run it in opposite directions
+  bool encloses = true;  // every edge is run as often one way as the other: a volume is defined
   int64_t euler() const { return vertices - edges + faces; }
   // Of the closed orientable surface; -1 for any other.
   int64_t genus() const { return closed_oriented ? (2 - euler()) / 2 : -1; }

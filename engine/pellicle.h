@@ -365,6 +365,94 @@ typedef struct plc_check {
 PLC_API plc_status plc_check_mesh(plc_context* context, const double* xyz, int64_t vertex_count,
                                   const uint32_t* abc, int64_t face_count, plc_check* check);
 
+/* ---- measuring any mesh ----------------------------------------------------------------- */
+
+/* Every function here takes a mesh as plc_check_mesh does (xyz: 3 * vertex_count finite values, 0
+ * or of magnitudes 1e-70 .. 1e70; abc: 3 * face_count indices below vertex_count; NULL only where
+ * there are none) and fails with PLC_INVALID_ARGUMENT for impossible counts and NULL where it must
+ * not be, PLC_INVALID_DATA for a value or an index out of range. Outputs are then unchanged. The
+ * mesh need not be closed, manifold or oriented, unless said otherwise. */
+
+/* A component (faces adjacent by an edge), or all of them together. Lengths are in the unit of the
+ * coordinates. Moments are of the enclosed volume with density 1 and signed as it: negative where
+ * faces point inward, so that in sums the cavities count as holes. Magnitudes beyond 1e50 or below
+ * 1e-50 may over- or underflow in them. */
+typedef struct plc_component_measures {
+  size_t struct_size;
+  int64_t first_face;      /* the smallest face of it; 0 for all together */
+  int64_t vertices, faces; /* a vertex where a component touches itself counts again in it, one of
+                              no face counts in all together only */
+  int64_t euler;           /* V - E + F, of the faces and their vertices */
+  int64_t genus; /* -1 unless closed and consistently oriented; the sum for all together */
+  double area;
+  double volume; /* > 0 when faces are outward; NAN unless each edge is run as often one way as
+                    the other, as in a closed, oriented surface */
+  double low[3]; /* the corners of the bounding box of the faces; 0 for an empty mesh */
+  double high[3];
+  double centroid[3]; /* of the enclosed volume; NAN, as all that follows, where that is 0 or NAN */
+  double moments[6];  /* second moments about the centroid c: the integral over the volume of
+                         (x - c)(x - c)^T: xx, yy, zz, xy, yz, zx. The inertia tensor is their trace
+                         times the identity less this: 2/5 r^2 volume for a ball about any axis */
+  double principal_moments[3]; /* eigenvalues of the second moments, the largest first: the first
+                                  axis is the longest one of a solid */
+  double principal_axes[9];    /* unit, a right-handed frame: [3 i + k] is component k of axis i */
+} plc_component_measures;
+
+/* whole: of all components together, or NULL. components: the first min(capacity, *count) of them,
+ * the largest area first, ties by first_face; NULL where capacity is 0. *count: how many there are;
+ * ask with capacity 0 for it. whole->struct_size must be set; that of components is written. */
+PLC_API plc_status plc_mesh_component_measures(plc_context* context, const double* xyz,
+                                               int64_t vertex_count, const uint32_t* abc,
+                                               int64_t face_count, plc_component_measures* whole,
+                                               plc_component_measures* components, int64_t capacity,
+                                               int64_t* count);
+
+/* Curvatures of a smooth surface that the mesh stands for, per vertex: the mean one by the
+ * cotangent Laplacian along the normal, the Gaussian one by the angle defect, both over the mixed
+ * Voronoi area of Meyer, Desbrun, Schroeder & Barr, "Discrete Differential-Geometry Operators for
+ * Triangulated 2-Manifolds", 2003. Where faces are outward a ball of radius r has 1 / r (positive:
+ * convex) and 1 / r^2. mean, gaussian, area: vertex_count values, each may be NULL. NAN for mean
+ * and gaussian of a vertex on a border or an edge of more than two faces, or of no area. area is
+ * the mixed area: their sum is the area of the mesh, and the sum of gaussian * area over a closed
+ * manifold mesh is 2 pi euler to rounding (Gauss-Bonnet). */
+PLC_API plc_status plc_mesh_curvature(plc_context* context, const double* xyz, int64_t vertex_count,
+                                      const uint32_t* abc, int64_t face_count, double* mean,
+                                      double* gaussian, double* area);
+
+/* The vertex of a face nearest to a point, the first of equal ones; -1 where there is no face.
+ * point: three finite values. */
+PLC_API plc_status plc_mesh_nearest_vertex(plc_context* context, const double* xyz,
+                                           int64_t vertex_count, const uint32_t* abc,
+                                           int64_t face_count, const double* point,
+                                           int64_t* vertex);
+
+/* The length of the shortest path over the faces from vertex source, 0 .. vertex_count - 1, to each
+ * vertex: exact for the polyhedron but for rounding (about 1e-12 of it). distance: vertex_count
+ * values; INFINITY where no path leads. Paths cross borders nowhere and edges of any number of
+ * faces. The time grows like vertex_count^1.5 on usual meshes; one thread. */
+PLC_API plc_status plc_mesh_geodesic(plc_context* context, const double* xyz, int64_t vertex_count,
+                                     const uint32_t* abc, int64_t face_count, int64_t source,
+                                     double* distance);
+
+/* Distances from a mesh to the nearest points of the faces of another, unsigned. mean and rms are
+ * over the area of the first mesh, by a rule of seven points in each face (corners, middles of
+ * edges, centre) that is exact where the distance is a cubic; max is of all these points: at most,
+ * and for small faces nearly, the one-sided Hausdorff distance. */
+typedef struct plc_distances {
+  size_t struct_size;
+  double mean, rms, max;
+  double vertex_mean, vertex_max; /* of the first mesh's vertices alone */
+} plc_distances;
+
+/* distance: one value per vertex of the first mesh, or NULL. summary may be NULL, else struct_size
+ * must be set; NAN in it where the first mesh has no area (mean, rms) or no vertex (the others).
+ * PLC_INVALID_DATA where the other mesh has no face. */
+PLC_API plc_status plc_mesh_distance(plc_context* context, const double* xyz, int64_t vertex_count,
+                                     const uint32_t* abc, int64_t face_count,
+                                     const double* other_xyz, int64_t other_vertex_count,
+                                     const uint32_t* other_abc, int64_t other_face_count,
+                                     double* distance, plc_distances* summary);
+
 #ifdef __cplusplus
 }
 #endif

@@ -193,6 +193,35 @@ refused "phantom of no size" "no voxels" "$pellicle" phantom chain --size 0 -o o
 refused "phantom of no known kind" "volume.png" "$pellicle" phantom chain -o out/volume.png
 refused "phantom with negative noise" "noise" "$pellicle" phantom shell --noise -1 -o out/v.nrrd
 
+printf 'OFF\n4 4 0\n0 0 0\n3 0 0\n0 4 0\n0 0 12\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n' >tetra.off
+printf 'OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n' >points.off
+printf 'OFF\n3 1 0\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n' >nan.off
+measure() { refused "measure: $1" "$2" "$pellicle" measure "${@:3}"; }
+measure "no mesh" "MESH"
+measure "missing mesh" "missing.ply" missing.ply
+measure "mesh cut short" "cut.ply" cut.ply
+measure "NaN in a mesh" "vertex 0: z" nan.off
+measure "other mesh missing" "missing.ply" tetra.off --distance missing.ply
+measure "other mesh without faces" "points.off" tetra.off --distance points.off
+measure "NaN in the other mesh" "other mesh: vertex 0" tetra.off --distance nan.off
+measure "distance of points" "points.off" points.off --distance tetra.off
+measure "vertex that is not there" "geodesic-vertex" tetra.off --geodesic-vertex 4
+measure "negative vertex" "geodesic-vertex" tetra.off --geodesic-vertex -1
+measure "vertex that is no number" "geodesic-vertex" tetra.off --geodesic-vertex top
+measure "point of two numbers" "geodesic" tetra.off --geodesic 1,2
+measure "point that is not finite" "geodesic" tetra.off --geodesic 1,2,inf
+measure "point near no face" "points.off" points.off --geodesic 1,2,3
+measure "point and vertex" "geodesic" tetra.off --geodesic 1,2,3 --geodesic-vertex 0
+measure "negative components" "components" tetra.off --components -1
+for suffix in stl obj off; do
+  measure "values in .$suffix" "no values" tetra.off --curvature -o "out/mesh.$suffix"
+done
+measure "values of no kind" "nothing to write" tetra.off -o out/mesh.ply
+measure "mesh of no known kind" "xyz" tetra.off --curvature -o out/mesh.xyz
+measure "mesh in no folder" "missing" tetra.off --curvature -o missing/mesh.ply
+measure "JSON in no folder" "missing/m.json" tetra.off --json missing/m.json
+measure "JSON that is the mesh" "both" tetra.off --curvature -o out/mesh.ply --json out/mesh.ply
+
 # ---- what works
 works "--version" 0 "$pellicle" --version
 works "--help" 0 "$pellicle" extract --help
@@ -221,6 +250,28 @@ for key in pellicle input dims spacing range parameters levels level unit delta 
 done
 says "report" '"hash": "[0-9a-f]{16}"' out/r.json
 works "render" 0 "$pellicle" render surface.ply --size 64 -o out/picture.png
+works "measure" 0 "$pellicle" measure tetra.off --curvature --geodesic 0,0,13 --distance surface.ply \
+  -o out/m.vtp --json out/m.json
+says "measure" "^area +78.5941 mm2" stdout
+says "measure" "^volume +24 mm3" stdout
+says "measure" "^centroid +0.75, 1, 3 mm" stdout
+says "measure" "^  integral +12.5664$" stdout
+says "measure" "^geodesic from +vertex 3 at 0, 0, 12 mm" stdout
+says "measure" "^geodesic distance +at most 12.64" stdout
+for key in mesh unit whole components component_count vertices faces euler genus area volume low \
+  high centroid second_moments principal_moments principal_axes curvature mean gaussian integral \
+  geodesic reached farthest distance to_other from_other rms max hausdorff; do
+  says "JSON of measure" "\"$key\":" out/m.json
+done
+for name in MeanCurvature GaussianCurvature Geodesic Distance; do
+  says "values in .vtp" "Name=\"$name\"" out/m.vtp
+done
+works "measure to .ply" 0 "$pellicle" measure surface.ply --geodesic-vertex 3 -o out/m.ply
+says "values in .ply" "property float Geodesic" out/m.ply
+for file in out/m.vtp out/m.ply; do works "check of $file" 0 "$pellicle" check $file; done
+works "components" 0 "$pellicle" measure surface.ply --components 2000000000 --json out/parts.json
+works "an empty mesh" 0 "$pellicle" measure points.off --curvature --json out/points.json
+says "an empty mesh" '"min": null' out/points.json
 printf 'OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n' >open.off
 works "an open mesh" 1 "$pellicle" check open.off
 left_over >/dev/null

@@ -108,10 +108,35 @@ TEST_CASE("a segment visits every face whose box it passes through, each once", 
   }
 }
 
+TEST_CASE("the nearest of all faces is found, and few are asked for", "[face_tree]") {
+  const Soup m = random_soup(9, 3000, 0.5);
+  const plc::FaceTree tree = tree_of(m);
+  std::mt19937 bits(10);
+  std::normal_distribution<double> normal;
+  size_t asked = 0;
+  for (int i = 0; i < 200; ++i) {
+    const plc::Point3 p{2 * normal(bits), 2 * normal(bits), 2 * normal(bits)};
+    const auto squared = [&](uint32_t f) {  // to the first corner
+      const double* q = m.xyz.data() + 9 * static_cast<size_t>(f);
+      return (q[0] - p.x) * (q[0] - p.x) + (q[1] - p.y) * (q[1] - p.y) +
+             (q[2] - p.z) * (q[2] - p.z);
+    };
+    double least = 1e300;
+    for (uint32_t f = 0; f < m.face_count(); ++f) least = std::min(least, squared(f));
+    CHECK(tree.nearest(p, 1e300, [&](uint32_t f) {
+      ++asked;
+      return squared(f);
+    }) == least);
+    CHECK(tree.nearest(p, least / 2, squared) == least / 2);
+  }
+  CHECK(asked < 200 * m.face_count() / 10);
+}
+
 TEST_CASE("an empty tree pairs and visits nothing", "[face_tree]") {
   const plc::FaceTree tree = tree_of(Soup());
   CHECK(tree.leaf_count() == 0);
   int visits = 0;
   tree.along_segment({0, 0, 0}, {1, 1, 1}, [&](uint32_t) { ++visits; });
   CHECK(visits == 0);
+  CHECK(tree.nearest({0, 0, 0}, 7, [](uint32_t) { return 0.0; }) == 7);
 }

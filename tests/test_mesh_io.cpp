@@ -151,6 +151,60 @@ TEST_CASE("Meshes without normals are written without", "[mesh_io]") {
   }
 }
 
+TEST_CASE("Values at vertices are written to PLY and VTP, and the mesh is read past them",
+          "[mesh_io]") {
+  const fixtures::Folder folder;
+  for (const bool with_normals : {true, false}) {
+    TriangleMesh mesh = torus();
+    if (!with_normals) mesh.normals.clear();
+    plc::tools::Scalars ones{"Ones", {}}, ids{"Ids", {}};
+    for (size_t v = 0; v < mesh.xyz.size() / 3; ++v) {
+      ones.values.push_back(v % 5 == 0 ? std::numeric_limits<float>::quiet_NaN() : 1.0F);
+      ids.values.push_back(static_cast<float>(v));
+    }
+    mesh.scalars = {ones, ids};
+    for (const std::string suffix : {".ply", ".vtp"}) {
+      CAPTURE(suffix, with_normals);
+      const std::string path = folder / ("a" + suffix);
+      write_mesh(path, mesh);
+      const TriangleMesh back = read_mesh(path);
+      CHECK(back.xyz == mesh.xyz);
+      CHECK(back.abc == mesh.abc);
+      CHECK(back.normals == mesh.normals);
+      CHECK(back.scalars.empty());
+    }
+    // The values themselves, where the headers say they are.
+    const size_t stride = (with_normals ? 8 : 5) * sizeof(float);
+    const std::string ply = fixtures::contents(folder / "a.ply");
+    CHECK_THAT(ply, Catch::Contains("property float Ones\nproperty float Ids\nelement face"));
+    const size_t vertices = ply.find("end_header\n") + 11;
+    const std::string vtp = fixtures::contents(folder / "a.vtp");
+    const size_t tag = vtp.find("Name=\"Ids\" format=\"appended\" offset=\"");
+    REQUIRE(tag != std::string::npos);
+    const size_t array = vtp.find("\n_") + 2 + std::stoul(vtp.substr(tag + 37)) + sizeof(uint64_t);
+    for (size_t v = 0; v < ids.values.size(); ++v) {
+      const size_t end = vertices + (v + 1) * stride;
+      CHECK(ply.substr(end - 4, 4) == samples::raw<float>({ids.values[v]}));
+      CHECK(ply.substr(end - 8, 4) == samples::raw<float>({ones.values[v]}));
+      CHECK(vtp.substr(array + 4 * v, 4) == samples::raw<float>({ids.values[v]}));
+    }
+  }
+}
+
+TEST_CASE("Formats that hold no values at vertices refuse them, before and when writing",
+          "[mesh_io]") {
+  const fixtures::Folder folder;
+  TriangleMesh mesh = torus();
+  mesh.scalars = {{"Ones", std::vector<float>(mesh.xyz.size() / 3, 1.0F)}};
+  for (const std::string suffix : {".stl", ".obj", ".off"}) {
+    const std::string path = folder / ("a" + suffix);
+    CHECK_THAT(failure_of([&] { write_mesh(path, mesh); }), Catch::Contains("no values"));
+    CHECK_THAT(failure_of([&] { plc::tools::check_mesh_path(path, true); }),
+               Catch::Contains("no values"));
+  }
+  CHECK(folder.file_count() == 0);
+}
+
 TEST_CASE("An empty mesh is a mesh", "[mesh_io]") {
   const fixtures::Folder folder;
   for (const std::string suffix : kSuffixes) {

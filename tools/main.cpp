@@ -11,6 +11,7 @@
 #include "engine/pellicle.h"
 #include "tools/command_check.h"
 #include "tools/command_extract.h"
+#include "tools/command_measure.h"
 #include "tools/command_phantom.h"
 #include "tools/command_render.h"
 #include "tools/volume_io.h"
@@ -39,10 +40,12 @@ class Command {
     app_.get_formatter()->column_width(kHelpColumn);
     extract_ = add("extract", "Extract a closed surface from a volume");
     check_ = add("check", "Tell what a mesh is and whether it is a valid closed surface");
+    measure_ = add("measure", "Measure a mesh: volumes, moments, curvatures, geodesics, distances");
     phantom_ = add("phantom", "Write a synthetic test volume");
     render_ = add("render", "Draw a shaded picture of a mesh");
     add_extract_options(*extract_, extract_options_);
     add_check_options(*check_, check_options_);
+    add_measure_options(*measure_, measure_options_);
     add_phantom_options(*phantom_, phantom_arguments_);
     add_render_options(*render_, render_options_);
   }
@@ -55,12 +58,13 @@ class Command {
     } catch (const CLI::ParseError& e) {
       const auto unknown = app_.remaining();
       if (app_.get_subcommands().empty() && !unknown.empty()) {
-        return fail(unknown[0] + ": unknown command; extract, check, phantom or render");
+        return fail(unknown[0] + ": unknown command; extract, check, measure, phantom or render");
       }
       return fail(e.what());
     }
     if (extract_->parsed()) return run_extract(extract_options_);
     if (check_->parsed()) return run_check(check_options_);
+    if (measure_->parsed()) return run_measure(measure_options_);
     if (phantom_->parsed()) return run_phantom(phantom_arguments_);
     return run_render(render_options_);
   }
@@ -74,10 +78,12 @@ class Command {
                 "pellicle"};
   CLI::App* extract_ = nullptr;
   CLI::App* check_ = nullptr;
+  CLI::App* measure_ = nullptr;
   CLI::App* phantom_ = nullptr;
   CLI::App* render_ = nullptr;
   ExtractOptions extract_options_;
   CheckOptions check_options_;
+  MeasureOptions measure_options_;
   PhantomArguments phantom_arguments_;
   RenderOptions render_options_;
 };

@@ -17,19 +17,28 @@ struct Format {
   const char* suffix;
   TriangleMesh (*read)(const std::string& path, std::string_view data);
   void (*write)(AtomicFile& file, const TriangleMesh& mesh);
+  bool has_scalars;
 };
 
 const Format& format_of(const std::string& path) {
-  static constexpr Format kFormats[] = {{".stl", read_stl, write_stl},
-                                        {".ply", read_ply, write_ply},
-                                        {".obj", read_obj, write_obj},
-                                        {".off", read_off, write_off},
-                                        {".vtp", read_vtp, write_vtp}};
+  static constexpr Format kFormats[] = {{".stl", read_stl, write_stl, false},
+                                        {".ply", read_ply, write_ply, true},
+                                        {".obj", read_obj, write_obj, false},
+                                        {".off", read_off, write_off, false},
+                                        {".vtp", read_vtp, write_vtp, true}};
   const std::string suffix = path_suffix(path);
   for (const Format& format : kFormats) {
     if (suffix == format.suffix) return format;
   }
   throw Failure{path + ": unknown format of meshes (known are .stl, .ply, .obj, .off and .vtp)"};
+}
+
+const Format& format_for(const std::string& path, bool with_scalars) {
+  const Format& format = format_of(path);
+  if (with_scalars && !format.has_scalars) {
+    throw Failure{path + ": this format has no values at vertices (.ply and .vtp have)"};
+  }
+  return format;
 }
 
 std::string contents(const std::string& path) {
@@ -100,13 +109,13 @@ TriangleMesh read_mesh(const std::string& path) {
   }
 }
 
-void check_mesh_path(const std::string& path) {
-  format_of(path);
+void check_mesh_path(const std::string& path, bool with_scalars) {
+  format_for(path, with_scalars);
   const AtomicFile file(path);
 }
 
 void write_mesh(const std::string& path, const TriangleMesh& mesh) {
-  const Format& format = format_of(path);
+  const Format& format = format_for(path, !mesh.scalars.empty());
   AtomicFile file(path);
   format.write(file, mesh);
   file.commit();

@@ -193,7 +193,7 @@ class VtpReader {
   MeshBuilder mesh_;
 };
 
-std::string array_tag(const char* type, const char* name, int components, size_t offset) {
+std::string array_tag(const char* type, const std::string& name, int components, size_t offset) {
   std::string text = std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\"";
   if (components > 1) text += " NumberOfComponents=\"" + std::to_string(components) + "\"";
   return text + " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
@@ -220,7 +220,9 @@ void write_vtp(AtomicFile& file, const TriangleMesh& mesh) {
   const bool with_normals = mesh.normals.size() == mesh.xyz.size();
   const size_t faces = mesh.abc.size() / 3;
   const size_t float_bytes = sizeof(uint64_t) + mesh.xyz.size() * sizeof(float);
-  const size_t cells_at = float_bytes * (with_normals ? 2 : 1);
+  const size_t scalars_at = float_bytes * (with_normals ? 2 : 1);
+  const size_t scalar_bytes = sizeof(uint64_t) + mesh.xyz.size() / 3 * sizeof(float);
+  const size_t cells_at = scalars_at + scalar_bytes * mesh.scalars.size();
   std::string out =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
       "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"";
@@ -228,9 +230,13 @@ void write_vtp(AtomicFile& file, const TriangleMesh& mesh) {
   out += "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"";
   put_integer(out, faces);
   out += "\">\n";
-  if (with_normals) {
-    out += "<PointData Normals=\"Normals\">\n" + array_tag("Float32", "Normals", 3, float_bytes) +
-           "</PointData>\n";
+  if (with_normals || !mesh.scalars.empty()) {
+    out += with_normals ? "<PointData Normals=\"Normals\">\n" : "<PointData>\n";
+    if (with_normals) out += array_tag("Float32", "Normals", 3, float_bytes);
+    for (size_t i = 0; i < mesh.scalars.size(); ++i) {
+      out += array_tag("Float32", mesh.scalars[i].name, 1, scalars_at + i * scalar_bytes);
+    }
+    out += "</PointData>\n";
   }
   out += "<Points>\n" + array_tag("Float32", "Points", 3, 0) + "</Points>\n<Polys>\n";
   out += array_tag("Int64", "connectivity", 1, cells_at);
@@ -240,6 +246,7 @@ void write_vtp(AtomicFile& file, const TriangleMesh& mesh) {
   drain(file, out, true);
   write_array<float>(file, mesh.xyz);
   if (with_normals) write_array<float>(file, mesh.normals);
+  for (const Scalars& scalars : mesh.scalars) write_array<float>(file, scalars.values);
   write_array<int64_t>(file, mesh.abc);
   std::vector<int64_t> offsets(faces);
   for (size_t i = 0; i < faces; ++i) offsets[i] = static_cast<int64_t>(3 * (i + 1));
