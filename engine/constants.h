@@ -75,6 +75,9 @@ inline constexpr float kSmallestBubble = 1.15F;
 // Room between a bubble and the vertices of the rest, in delta: (3) and a little. No point of a
 // face is this far from its corners.
 inline constexpr float kBubbleGap = 1.5F;
+// What still moves is not missed yet: a surface is searched when its energy is below this many
+// epsilon.
+inline constexpr double kLateEnergy = 10;
 // Times that I_0 is searched again after it has converged: what a bubble grows into may hide more.
 inline constexpr int kLateRounds = 2;
 

@@ -166,7 +166,7 @@ class Recovery {
         return s;
       }
       ++record.iterations;
-      record.energy = evolution_.energy();
+      record.energy = energy_ = evolution_.energy();
       record.speed = evolution_.speed();
       first_energy = std::max(first_energy, record.energy);
       const bool slow = spec_.calm_speed == 0 || record.speed < spec_.calm_speed;
@@ -185,7 +185,9 @@ class Recovery {
   // `added`: whether something had been missed.
   Status add_late_bubbles(LevelRecord& record, bool& added) {
     added = false;
-    if (!spec_.late_bubbles || std::isnan(guide_.iso)) return {};
+    if (!spec_.late_bubbles || std::isnan(guide_.iso) || energy_ > kLateEnergy * spec_.epsilon) {
+      return {};
+    }
     const double start = now();
     const uint32_t before = mesh_.vertex_count();
     LateBubbles late;
@@ -268,6 +270,7 @@ class Recovery {
   UserConstraints user_;     // in the space of the level
   Buffer<Packed> gradient_;  // of the level
   Buffer<uint8_t> tried_;    // voxels of the level's late bubbles
+  double energy_ = 0;        // of the last iteration on any level
   bool stopped_ = false;
   double fraction_ = 0;
 };
