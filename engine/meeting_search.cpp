@@ -108,12 +108,11 @@ void MeetingSearch::build_leaves(const Mesh& mesh, const Executor& executor) {
   Level& level = levels_[0];
   const size_t count = block_count(face_count(), kLanes);
   level.boxes.resize_uninitialized(count);
-  level.any_moved.resize_uninitialized(count);
-  level.all_moved.resize_uninitialized(count);
+  level.marked.resize_uninitialized(count);
   run_blocks(executor, count, kNodeBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t leaf = begin; leaf < end; ++leaf) {
       Boxes& boxes = level.boxes[leaf];
-      uint32_t moved = 0;
+      uint32_t marked = 0;
       const auto used =
           static_cast<uint32_t>(std::min<size_t>(kLanes, face_count() - leaf * kLanes));
       for (uint32_t k = 0; k < used; ++k) {
@@ -121,14 +120,13 @@ void MeetingSearch::build_leaves(const Mesh& mesh, const Executor& executor) {
         const FaceBox box = face_box(mesh.positions, abc);
         set_lane(boxes, k,
                  {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}});
-        moved |= static_cast<uint32_t>(mesh.has_moved(abc)) << k;
+        marked |= static_cast<uint32_t>(mesh.marked(abc)) << k;
       }
       for (uint32_t k = used; k < kLanes; ++k) {
         set_lane(boxes, k,
                  {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
       }
-      level.any_moved[leaf] = static_cast<uint8_t>(moved);
-      level.all_moved[leaf] = static_cast<uint8_t>(moved | (0xFFU << used));
+      level.marked[leaf] = static_cast<uint8_t>(marked);
     }
   });
 }
@@ -140,11 +138,10 @@ void MeetingSearch::build_level(size_t index, const Executor& executor) {
   const Level& below = levels_[index - 1];
   const size_t children = below.boxes.size(), count = block_count(children, kLanes);
   level.boxes.resize_uninitialized(count);
-  level.any_moved.resize_uninitialized(count);
-  level.all_moved.resize_uninitialized(count);
+  level.marked.resize_uninitialized(count);
   run_blocks(executor, count, kNodeBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t node = begin; node < end; ++node) {
-      uint32_t any = 0, all = 0;
+      uint32_t marked = 0;
       for (uint32_t k = 0; k < kLanes; ++k) {
         const size_t child = node * kLanes + k;
         const bool used = child < children;
@@ -152,11 +149,9 @@ void MeetingSearch::build_level(size_t index, const Executor& executor) {
             level.boxes[node], k,
             used ? all_lanes(below.boxes[child])
                  : Box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
-        any |= static_cast<uint32_t>(used && below.any_moved[child] != 0) << k;
-        all |= static_cast<uint32_t>(!used || below.all_moved[child] == 0xFF) << k;
+        marked |= static_cast<uint32_t>(used && below.marked[child] != 0) << k;
       }
-      level.any_moved[node] = static_cast<uint8_t>(any);
-      level.all_moved[node] = static_cast<uint8_t>(all);
+      level.marked[node] = static_cast<uint8_t>(marked);
     }
   });
 }
@@ -173,24 +168,24 @@ uint32_t MeetingSearch::index_of(uint32_t a, uint32_t b, uint32_t c) const {
   return f;
 }
 
-// Faces around v that moved, with the others around v.
+// Marked faces around v, with the others around v.
 void MeetingSearch::search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) const {
   const uint32_t count = mesh.rings.valence[v];
   if (count == 0) return;
-  bool moved = mesh.has_moved(v);
-  for (uint32_t k = 0; k < count && !moved; ++k) moved = mesh.has_moved(mesh.rings.slot(v, k));
-  if (!moved || star_is_plain(mesh.rings, mesh.positions, v)) return;
+  bool marked = mesh.marked(v);
+  for (uint32_t k = 0; k < count && !marked; ++k) marked = mesh.marked(mesh.rings.slot(v, k));
+  if (!marked || star_is_plain(mesh.rings, mesh.positions, v)) return;
   const auto corners = [&](uint32_t k) {
     return std::array<uint32_t, 3>{v, mesh.rings.slot(v, k),
                                    mesh.rings.slot(v, k + 1 == count ? 0 : k + 1)};
   };
   for (uint32_t i = 0; i < count; ++i) {
     const auto f = corners(i);
-    const bool f_moved = mesh.has_moved(f.data());
+    const bool f_marked = mesh.marked(f.data());
     const Triangle t = make_triangle(mesh.positions, f.data());
     for (uint32_t j = i + 1; j < count; ++j) {
       const auto g = corners(j);
-      if ((f_moved || mesh.has_moved(g.data())) &&
+      if ((f_marked || mesh.marked(g.data())) &&
           triangles_intersect(t, make_triangle(mesh.positions, g.data()))) {
         const uint32_t a = index_of(f[0], f[1], f[2]), b = index_of(g[0], g[1], g[2]);
         pairs.emplace_back(std::min(a, b), std::max(a, b));
@@ -199,18 +194,16 @@ void MeetingSearch::search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) cons
   }
 }
 
-// Moved faces of one leaf with the faces of another (or the same) that have no common vertex.
+// Marked faces of one leaf with those of a later one, or the same, that have no common vertex.
 void MeetingSearch::search_leaves(const Mesh& mesh, uint32_t leaf, const Box& other_box,
                                   uint32_t other, Pairs& pairs) const {
   const Level& level = levels_[0];
-  const uint32_t moved = level.any_moved[leaf];
-  uint32_t near = overlapping(level.boxes[leaf], other_box) & moved;
+  uint32_t near = overlapping(level.boxes[leaf], other_box) & level.marked[leaf];
   for (; near != 0; near &= near - 1) {
     const uint32_t k = lowest_bit(near);
     uint32_t hits = overlapping(level.boxes[other], lane(level.boxes[leaf], k));
-    // Two moved faces find each other twice: the smaller one's turn counts.
-    if (other < leaf) hits &= ~static_cast<uint32_t>(level.any_moved[other]);
-    if (other == leaf) hits &= ~(moved & ((2U << k) - 1)) & ~(1U << k);
+    hits &= level.marked[other];
+    if (other == leaf) hits &= ~((2U << k) - 1);
     const uint32_t* f = face(leaf * kLanes + k);
     for (; hits != 0; hits &= hits - 1) {
       const uint32_t* g = face(other * kLanes + lowest_bit(hits));
@@ -227,7 +220,7 @@ void MeetingSearch::search_leaves(const Mesh& mesh, uint32_t leaf, const Box& ot
 }
 
 void MeetingSearch::search_leaf(const Mesh& mesh, uint32_t leaf, Pairs& pairs) const {
-  if (levels_[0].any_moved[leaf] == 0) return;
+  if (levels_[0].marked[leaf] == 0) return;
   const Box box = all_lanes(levels_[0].boxes[leaf]);
   struct Visit {
     uint32_t level, node;
@@ -244,14 +237,11 @@ void MeetingSearch::search_leaf(const Mesh& mesh, uint32_t leaf, Pairs& pairs) c
     const Visit at = stack[--depth];
     const Level& level = levels_[at.level];
     const Boxes& boxes = level.boxes[at.node];
-    uint32_t hits = overlapping(boxes, box);
-    // Children that lie before this leaf and moved altogether have found this leaf themselves.
+    uint32_t hits = overlapping(boxes, box) & level.marked[at.node];
+    // Children that lie before this leaf have found it themselves.
     const uint32_t own = leaf >> (3 * (at.level - 1));  // the child of this level that holds it
-    if (own >= (at.node + 1) * kLanes) {
-      hits &= ~static_cast<uint32_t>(level.all_moved[at.node]);
-    } else if (own >= at.node * kLanes) {
-      hits &= ~(level.all_moved[at.node] & ((1U << (own - at.node * kLanes)) - 1));
-    }
+    if (own >= (at.node + 1) * kLanes) continue;
+    if (own >= at.node * kLanes) hits &= ~((1U << (own - at.node * kLanes)) - 1);
     for (; hits != 0; hits &= hits - 1) {
       const uint32_t k = lowest_bit(hits), child = at.node * kLanes + k;
       if (at.level == 1) {
@@ -264,12 +254,12 @@ void MeetingSearch::search_leaf(const Mesh& mesh, uint32_t leaf, Pairs& pairs) c
 }
 
 const std::vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t slots,
-                                                 const Packed* positions, const uint8_t* moved,
+                                                 const Packed* positions, const uint8_t* marked,
                                                  const Executor& executor) {
-  const Mesh mesh{rings, slots, positions, moved};
+  const Mesh mesh{rings, slots, positions, marked};
   pairs_.clear();
   faces_.clear();
-  if (moved != nullptr && std::all_of(moved, moved + slots, [](uint8_t m) { return m == 0; })) {
+  if (marked != nullptr && std::all_of(marked, marked + slots, [](uint8_t m) { return m == 0; })) {
     return pairs_;
   }
   list_faces(mesh, executor);

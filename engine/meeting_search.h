@@ -21,21 +21,21 @@ namespace plc {
 //   faces     12               three ids, the smallest first, in order of Mesh::faces()
 //   begin     2                per vertex: its first face
 //   boxes     27.4             per node: boxes of 8 faces or nodes, lane by lane
-//   moved     0.3              per node: which of the 8 moved; which of the 8 moved altogether
+//   marked    0.15             per node: in which of the 8 a face is marked
 //
 // Buffers are kept from call to call. Not thread-safe: one search at a time.
 class MeetingSearch {
  public:
-  // rings and positions of ids below `slots`; deleted vertices (valence 0) are skipped. moved: per
-  // id, not 0 where the vertex moved or its ring changed since the mesh was last known to be good;
-  // NULL: all did. Returns the pairs (f, g), f < g, of faces of which at least one has a moved
-  // vertex and that meet elsewhere than in what they share (triangle_intersection.h: exact, faces
-  // of zero area left out), sorted, until the next call. The same for any executor. The mesh is
-  // closed and a manifold.
+  // rings and positions of ids below `slots`; deleted vertices (valence 0) are skipped. marked: per
+  // id, not 0 where the vertex may have part in a meeting; NULL: all may. Returns the pairs (f, g),
+  // f < g, of faces that meet elsewhere than in what they share (triangle_intersection.h: exact,
+  // faces of zero area left out) and both have a marked vertex - one of them, where they share a
+  // vertex -, sorted, until the next call. The same for any executor. The mesh is closed and a
+  // manifold.
   const std::vector<FacePair>& find(const RingView& rings, uint32_t slots, const Packed* positions,
-                                    const uint8_t* moved, const Executor& executor);
+                                    const uint8_t* marked, const Executor& executor);
 
-  // The faces of the last call; none where nothing had moved.
+  // The faces of the last call; none where nothing was marked.
   size_t face_count() const { return faces_.size() / 3; }
   const uint32_t* face(uint32_t f) const { return faces_.data() + 3 * static_cast<size_t>(f); }
 
@@ -50,16 +50,16 @@ class MeetingSearch {
   // Level 0: nodes of faces; level k: nodes of nodes of level k - 1.
   struct Level {
     Buffer<Boxes> boxes;
-    Buffer<uint8_t> any_moved, all_moved;  // a bit per child; all_moved also for lanes not used
+    Buffer<uint8_t> marked;  // a bit per child: some face in it is
   };
   struct Mesh {
     RingView rings;
     uint32_t slots;
     const Packed* positions;
-    const uint8_t* moved;
-    bool has_moved(uint32_t v) const { return moved == nullptr || moved[v] != 0; }
-    bool has_moved(const uint32_t* abc) const {
-      return has_moved(abc[0]) || has_moved(abc[1]) || has_moved(abc[2]);
+    const uint8_t* marks;
+    bool marked(uint32_t v) const { return marks == nullptr || marks[v] != 0; }
+    bool marked(const uint32_t* abc) const {
+      return marked(abc[0]) || marked(abc[1]) || marked(abc[2]);
     }
   };
   using Pairs = std::vector<FacePair>;

@@ -49,30 +49,44 @@ int64_t MotionGuard::put_back(const uint32_t* face, const Buffer<Packed>& before
 void MotionGuard::assess(const std::vector<uint32_t>& due, const SpatialHash& hash) {
   // Normals of the movement's start are at hand for all: sheets do not turn over in a step.
   const size_t chunks = (due.size() + kChunk - 1) / kChunk;
+  risks_.resize(std::max(risks_.size(), chunks));
   executor_.run(chunks, [&](size_t chunk) {
+    risks_[chunk].clear();
     const size_t end = std::min((chunk + 1) * kChunk, due.size());
-    for (size_t i = chunk * kChunk; i < end; ++i) {
-      mesh_.risk[due[i]] = at_risk(due[i], hash) ? 1 : 0;
-    }
+    for (size_t i = chunk * kChunk; i < end; ++i) list_risks(due[i], hash, risks_[chunk]);
   });
+  for (const uint32_t v : due) mesh_.risk[v] = 0;
+  for (size_t chunk = 0; chunk < chunks; ++chunk) {
+    for (const uint32_t v : risks_[chunk]) mesh_.risk[v] = 1;
+  }
 }
 
-bool MotionGuard::at_risk(uint32_t v, const SpatialHash& hash) const {
+bool MotionGuard::folded(uint32_t v, const Neighbors& ring) const {
   const Vec3 p = mesh_.at(v);
   const Vec3 n = mesh_.normal.at(v);
-  const Neighbors ring = mesh_.ring(v);
   for (uint32_t k = 0; k < ring.size(); ++k) {
     const Vec3 area = area_vector(p, mesh_.at(ring[k]), mesh_.at(ring.next(k)));
     if (dot(area, n) <= kRiskDot * length(area)) return true;
   }
+  return false;
+}
+
+// Appends v and what it is at risk with, if any.
+void MotionGuard::list_risks(uint32_t v, const SpatialHash& hash,
+                             std::vector<uint32_t>& risks) const {
+  const Vec3 p = mesh_.at(v);
+  const Vec3 n = mesh_.normal.at(v);
+  const Neighbors ring = mesh_.ring(v);
+  const size_t before = risks.size();
   const float reach = kRiskReach * static_cast<float>(mesh_.delta);
   const Vec3 span{reach, reach, reach};
-  bool risk = false;
   hash.visit_box(mesh_, p - span, p + span, [&](uint32_t w, Vec3 q) {
-    if (risk || w == v || squared_distance(p, q) > reach * reach) return;
-    risk = dot(n, mesh_.normal.at(w)) <= kRiskDot && !ring.contains(w) && !apart(v, ring, w);
+    if (w == v || squared_distance(p, q) > reach * reach) return;
+    if (dot(n, mesh_.normal.at(w)) <= kRiskDot && !ring.contains(w) && !apart(v, ring, w)) {
+      risks.push_back(w);
+    }
   });
-  return risk;
+  if (risks.size() != before || folded(v, ring)) risks.push_back(v);
 }
 
 // A plane across the normal of v or of w lies between their faces, with room on both sides. They

@@ -14,13 +14,15 @@ namespace plc {
 // faces that meet go back to where they were and lose their speed; again, until none meet: in the
 // worst case all are back where they started.
 //
-// Only faces with a vertex at risk are tested, against all. Two faces that meet share a vertex
-// around which the surface folds, or each has a corner within kRiskReach of the other's: an edge of
-// one pierces the other, and is at most half its length from the piercing point, as a corner of the
-// pierced face is at most 1/sqrt 3 of its longest edge. There a vertex v is at risk when
+// Only faces with a vertex at risk are tested, against each other. Two faces that meet share a
+// vertex around which the surface folds, or each has a corner within kRiskReach of the other's: an
+// edge of one pierces the other, and is at most half its length from the piercing point, as a
+// corner of the pierced face is at most 1/sqrt 3 of its longest edge. There a vertex v is at risk
+// when
 //   - the normal of one of its faces is turned by more than kRiskDot against its own, or
 //   - for a vertex w within kRiskReach that is no neighbour and has a normal turned by more than
-//     that, no plane across either normal keeps the faces of v and of w kRiskGap apart.
+//     that, no plane across either normal keeps the faces of v and of w kRiskGap apart; w is then
+//     at risk, too.
 // Parts whose normals agree are one sheet, or the outer two of three sheets, and then the middle
 // one is at risk with both. Like the constraints, the risk of a vertex is looked at when it is due:
 // of two vertices the later look counts, and since then neither has moved by more than kCheckPath.
@@ -36,13 +38,15 @@ class MotionGuard {
 
  private:
   void assess(const std::vector<uint32_t>& due, const SpatialHash& hash);
-  bool at_risk(uint32_t v, const SpatialHash& hash) const;
+  bool folded(uint32_t v, const Neighbors& ring) const;
+  void list_risks(uint32_t v, const SpatialHash& hash, std::vector<uint32_t>& risks) const;
   bool apart(uint32_t v, const Neighbors& ring, uint32_t w) const;
   int64_t put_back(const uint32_t* face, const Buffer<Packed>& before, SpatialHash& hash);
 
   Mesh& mesh_;
   const Executor& executor_;
   MeetingSearch search_;
+  std::vector<std::vector<uint32_t>> risks_;  // per task
 };
 
 }  // namespace plc
