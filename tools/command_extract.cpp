@@ -1,16 +1,21 @@
 #include "tools/command_extract.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "tools/command_check.h"
 #include "tools/engine_handles.h"
+#include "tools/extract_inputs.h"
+#include "tools/extract_job.h"
 #include "tools/interrupt.h"
 #include "tools/mesh_io.h"
 #include "tools/progress_line.h"
 #include "tools/report.h"
+#include "tools/trace_file.h"
 #include "tools/volume_io.h"
 
 namespace plc::tools {
@@ -26,12 +31,14 @@ double now() {
 
 struct Watch {
   ProgressLine& line;
+  TraceFile& trace;
   const InterruptGuard& interrupt;
 };
 
 int on_progress(const plc_progress* progress, void* user) {
   auto& watch = *static_cast<Watch*>(user);
   watch.line.update(*progress);
+  watch.trace.add(*progress);
   return watch.interrupt.interrupted() ? 1 : 0;
 }
 
@@ -49,16 +56,16 @@ TriangleMesh mesh_of(const plc_surface* surface, plc_space space) {
 }
 
 // NULL where it was cancelled.
-SurfaceHandle evolve(plc_context* context, const plc_image& image, const ExtractOptions& options,
+SurfaceHandle evolve(plc_context* context, const plc_image& image, const ExtractJob& job,
+                     const ExtractInputs& inputs, const ExtractOptions& options, TraceFile& trace,
                      const InterruptGuard& interrupt) {
   ProgressLine line(options.quiet);
-  Watch watch{line, interrupt};
-  plc_extras extras;
-  plc_extras_defaults(&extras);
+  Watch watch{line, trace, interrupt};
+  plc_extras extras = inputs.extras();
   extras.progress = on_progress;
   extras.progress_user = &watch;
   plc_surface* surface = nullptr;
-  const plc_status status = plc_extract(context, &image, &options.parameters, &extras, &surface);
+  const plc_status status = plc_extract(context, &image, &job.parameters, &extras, &surface);
   if (status == PLC_CANCELLED) return nullptr;
   if (status != PLC_OK) throw failure_of(context, status);
   return SurfaceHandle(surface);
@@ -73,61 +80,110 @@ plc_measures measures_of(plc_context* context, const plc_surface* surface) {
 }
 
 // Before the long run rather than after it.
-void check_paths(const ExtractOptions& options) {
-  check_mesh_path(options.output);
-  if (options.report.empty()) return;
-  if (options.report == options.output) {
-    throw Failure{options.report + ": is to be both the mesh and the report"};
+void check_paths(const std::vector<ExtractJob>& jobs) {
+  for (const ExtractJob& job : jobs) {
+    check_mesh_path(job.output);
+    if (!job.report.empty()) check_report_path(job.report);
   }
-  check_report_path(options.report);
 }
+
+class Extraction {
+ public:
+  Extraction(const ExtractOptions& options, InterruptGuard& interrupt)
+      : options_(options), interrupt_(interrupt), jobs_(jobs_of(options)) {
+    check_paths(jobs_);
+    for (const ExtractJob& job : jobs_) traces_.emplace_back(job.trace);
+    interrupt.end_at_once();
+    context_ = make_context(options.context);
+    volume_ = read_volume(options.input);
+    inputs_.emplace(options);
+    read_ = now() - start_;
+  }
+
+  // The exit code.
+  int run() {
+    int code = 0;
+    for (size_t i = 0; i < jobs_.size(); ++i) {
+      const int own = run(i);
+      if (own == kExitInterrupted) return own;
+      code = std::max(code, own);
+    }
+    return code;
+  }
+
+ private:
+  int run(size_t index) {
+    ExtractJob job = jobs_[index];
+    ExtractOptions told = options_;
+    if (job.follows) follow(index, job, told);
+    interrupt_.note_first();
+    surface_ =
+        evolve(context_.get(), volume_.image, job, *inputs_, options_, traces_[index], interrupt_);
+    if (surface_ == nullptr || interrupt_.interrupted()) {
+      std::fputs("pellicle: interrupted\n", stderr);
+      return kExitInterrupted;
+    }
+    if (plc_surface_face_count(surface_.get()) == 0) {
+      throw Failure{"no surface is left: at this iso the object is smaller than the mesh resolves"};
+    }
+    return write(job, traces_[index], told);
+  }
+
+  // Figure 24: from the last surface, on the full image, where that is nearer.
+  void follow(size_t index, ExtractJob& job, ExtractOptions& told) {
+    plc_parameters& p = job.parameters;
+    const double last = jobs_[index - 1].parameters.iso;
+    if (!nearer(volume_.image, last, p.iso, p.inside_below != 0)) return;
+    inputs_->start_from(mesh_of(surface_.get(), options_.space));
+    p.init = PLC_INIT_MESH;
+    p.levels = 0;
+    p.level_iso_count = 0;
+    told.init_file = jobs_[index - 1].output;
+  }
+
+  // What is written from here on is whole; a signal waits for it.
+  int write(const ExtractJob& job, const TraceFile& trace, const ExtractOptions& told) {
+    interrupt_.only_note();
+    const double written = now();
+    const plc_measures measures = measures_of(context_.get(), surface_.get());
+    const TriangleMesh mesh = mesh_of(surface_.get(), options_.space);
+    // The engine's promise is about its own mesh space; this one is rounded to another.
+    const plc_check check = check_of(context_.get(), mesh);
+    write_mesh(job.output, mesh);
+    trace.commit();
+    const Timings timings{read_, now() - written, now() - start_};
+    if (!job.report.empty()) {
+      write_report(job.report, make_report(context_.get(), volume_.image, surface_.get(), measures,
+                                           timings, told));
+    }
+    if (!options_.quiet) {
+      std::fputs(summary(volume_.image, surface_.get(), measures, timings, job.output).c_str(),
+                 stdout);
+      std::fflush(stdout);
+    }
+    if (check.valid != 0) return 0;
+    std::fprintf(stderr, "pellicle: %s: written, but not valid as `pellicle check` tells\n",
+                 job.output.c_str());
+    return kExitInvalid;
+  }
+
+  const ExtractOptions& options_;
+  InterruptGuard& interrupt_;
+  double start_ = now();
+  double read_ = 0;
+  std::vector<ExtractJob> jobs_;
+  std::vector<TraceFile> traces_;
+  ContextHandle context_;
+  LoadedVolume volume_{};
+  std::optional<ExtractInputs> inputs_;
+  SurfaceHandle surface_;  // the last one
+};
 
 }  // namespace
 
 int run_extract(const ExtractOptions& options) {
-  const double start = now();
   InterruptGuard interrupt;
-  check_paths(options);
-  interrupt.end_at_once();
-  const ContextHandle context = make_context(options.context);
-  const LoadedVolume volume = read_volume(options.input);
-  Timings timings;
-  timings.read = now() - start;
-
-  interrupt.note_first();
-  const SurfaceHandle surface = evolve(context.get(), volume.image, options, interrupt);
-  if (surface == nullptr || interrupt.interrupted()) {
-    std::fputs("pellicle: interrupted\n", stderr);
-    return kExitInterrupted;
-  }
-  if (plc_surface_face_count(surface.get()) == 0) {
-    throw Failure{"no surface is left: at this iso the object is smaller than the mesh resolves"};
-  }
-
-  // What is written from here on is whole; a signal waits for it.
-  interrupt.only_note();
-  const double written = now();
-  const plc_measures measures = measures_of(context.get(), surface.get());
-  const TriangleMesh mesh = mesh_of(surface.get(), options.space);
-  // The engine's promise is about its own mesh space; this one is rounded to another.
-  const plc_check check = check_of(context.get(), mesh);
-  write_mesh(options.output, mesh);
-  timings.write = now() - written;
-  timings.total = now() - start;
-  if (!options.report.empty()) {
-    write_report(options.report, make_report(context.get(), volume.image, surface.get(), measures,
-                                             timings, options.space));
-  }
-  if (!options.quiet) {
-    std::fputs(summary(volume.image, surface.get(), measures, timings, options.output).c_str(),
-               stdout);
-  }
-  if (check.valid == 0) {
-    std::fprintf(stderr, "pellicle: %s: written, but not valid as `pellicle check` tells\n",
-                 options.output.c_str());
-    return kExitInvalid;
-  }
-  return 0;
+  return Extraction(options, interrupt).run();
 }
 
 }  // namespace plc::tools

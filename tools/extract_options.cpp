@@ -52,16 +52,46 @@ void read_rest_length(const std::string& text, plc_parameters& p) {
   p.rest_length_value = value;
 }
 
-void read_init(const std::string& text, plc_parameters& p) {
-  const std::string prefix = "bubbles=";
+// The part behind "name=", or NULL.
+const char* behind(const std::string& text, const std::string& name) {
+  return text.rfind(name + "=", 0) == 0 ? text.c_str() + name.size() + 1 : nullptr;
+}
+
+// "x,y,z,r;x,y,z,r".
+std::vector<plc_seed> read_seeds(const std::string& text) {
+  std::vector<plc_seed> seeds;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = std::min(text.find(';', begin), text.size());
+    const auto v = to_numbers("--init seeds", text.substr(begin, end - begin), 4);
+    if (!(v[3] > 0)) refuse_value("--init seeds", text, "radii above 0");
+    seeds.push_back({{v[0], v[1], v[2]}, v[3]});
+    begin = end + 1;
+  }
+  return seeds;
+}
+
+void read_init(const std::string& text, ExtractOptions& o) {
+  plc_parameters& p = o.parameters;
   if (text == "bubble") {
     p.init = PLC_INIT_BUBBLE;
-  } else if (text.rfind(prefix, 0) == 0) {
+  } else if (text == "iso") {
+    p.init = PLC_INIT_ISO;
+  } else if (const char* counts = behind(text, "bubbles")) {
     p.init = PLC_INIT_BUBBLES;
-    const auto n = to_integers("--init bubbles", text.substr(prefix.size()), 3);
+    const auto n = to_integers("--init bubbles", counts, 3);
     std::copy(n.begin(), n.end(), p.bubbles);
+  } else if (const char* seeds = behind(text, "seeds")) {
+    p.init = PLC_INIT_SEEDS;
+    o.seeds = read_seeds(seeds);
+  } else if (const char* mask = behind(text, "mask")) {
+    p.init = PLC_INIT_MASK;
+    o.init_file = mask;
+  } else if (const char* mesh = behind(text, "mesh")) {
+    p.init = PLC_INIT_MESH;
+    o.init_file = mesh;
   } else {
-    refuse_value("--init", text, "bubble or bubbles=NX,NY,NZ");
+    refuse_value("--init", text,
+                 "bubble, bubbles=NX,NY,NZ, seeds=X,Y,Z,R;..., iso, mask=FILE or mesh=FILE");
   }
 }
 
@@ -96,11 +126,23 @@ class Declarations {
            "Coordinates of the mesh: patient space in mm (lps: x to the left, y to the back, z to "
            "the head; ras: x to the right, y to the front) or voxel indices");
     command_.add_option("--report", options_.report, "JSON report to write")->type_name("FILE");
+    command_
+        .add_option("--trace", options_.trace,
+                    "CSV to write: iteration, level, vertices, energy, speed and seconds of every "
+                    "iteration (figure 17)")
+        ->type_name("FILE");
     command_.add_flag("--quiet", options_.quiet, "No progress and no summary; errors only");
   }
 
   void object() {
-    number("--iso", p_.iso, "Value of the surface, in the image's units");
+    text("--iso", "VALUE[,VALUE...]", "",
+         "Value of the surface, in the image's units. Several: one surface each, in this order, "
+         "NAME-VALUE.SUFFIX; each starts from the last one on the full image where that is nearer "
+         "than a bubble",
+         [&o = options_](const std::string& s) {
+           o.isos = to_numbers("--iso", s, 0);
+           o.parameters.iso = o.isos[0];
+         });
     choice("--inside", kInsides, p_.inside_below,
            "The object is where the image is above (a bright object) or below iso");
     text("--level-iso", "V,...", "derived",
@@ -141,10 +183,17 @@ class Declarations {
            "How voxels that are no cubes are met (4.4): the mesh is regular in mm (physical), in "
            "voxels with all its forces (voxel), or in the voxels of each level with its forces in "
            "mm (metric)");
-    text("--init", "bubble|bubbles=NX,NY,NZ", init_text(p_),
-         "Start from one bubble around the object, or from a grid of bubbles over the image, each "
-         "count 1 .. 256",
-         [&p = p_](const std::string& s) { read_init(s, p); });
+    text("--init", "KIND", init_text(options_),
+         "What the surface starts from: bubble, one around the object; bubbles=NX,NY,NZ, a grid of "
+         "them over the image, each count 1 .. 256; seeds=X,Y,Z,R;..., spheres (in --space, R in "
+         "mm); iso, the iso-surface of the coarsest image; mask=FILE, the surface of the voxels "
+         "of a volume that are not 0; mesh=FILE, a closed oriented mesh (in --space)",
+         [&o = options_](const std::string& s) { read_init(s, o); });
+    command_
+        .add_option("--attach", options_.attach,
+                    "File of places (in --space, mm) that draw the surface near them, \"attach X Y "
+                    "Z RADIUS [STRENGTH]\", or in which it does not move, \"pin X Y Z RADIUS\"")
+        ->type_name("FILE");
   }
 
   void model() {
@@ -238,10 +287,30 @@ std::string rest_length_text(const plc_parameters& parameters) {
   return name_of(parameters.rest_length, kRestLengths);
 }
 
-std::string init_text(const plc_parameters& parameters) {
-  if (parameters.init == PLC_INIT_BUBBLE) return "bubble";
-  return "bubbles=" + std::to_string(parameters.bubbles[0]) + "," +
-         std::to_string(parameters.bubbles[1]) + "," + std::to_string(parameters.bubbles[2]);
+std::string init_text(const ExtractOptions& o) {
+  const plc_parameters& p = o.parameters;
+  switch (p.init) {
+    case PLC_INIT_BUBBLE:
+      return "bubble";
+    case PLC_INIT_BUBBLES:
+      return "bubbles=" + std::to_string(p.bubbles[0]) + "," + std::to_string(p.bubbles[1]) + "," +
+             std::to_string(p.bubbles[2]);
+    case PLC_INIT_SEEDS: {
+      std::string text;
+      for (const plc_seed& s : o.seeds) {
+        text += (text.empty() ? "seeds=" : ";") + text_of(s.centre[0]) + "," +
+                text_of(s.centre[1]) + "," + text_of(s.centre[2]) + "," + text_of(s.radius);
+      }
+      return text;
+    }
+    case PLC_INIT_ISO:
+      return "iso";
+    case PLC_INIT_MASK:
+      return "mask=" + o.init_file;
+    case PLC_INIT_MESH:
+      return "mesh=" + o.init_file;
+  }
+  return "?";
 }
 
 void add_extract_options(CLI::App& command, ExtractOptions& options) {
@@ -252,6 +321,51 @@ void add_extract_options(CLI::App& command, ExtractOptions& options) {
   declare.pyramid();
   declare.model();
   declare.machine();
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--structure",
+          [&options](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) options.structure_texts.push_back(text);
+          },
+          "One of several structures of the image: NAME=OPTIONS, written to OUTPUT-NAME.SUFFIX; "
+          "OPTIONS are those of extract that tell the object, the pyramid and the model, on top "
+          "of the others. May be given several times")
+      ->type_name("NAME=OPTIONS")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void read_structures(ExtractOptions& options) {
+  for (const std::string& text : options.structure_texts) {
+    const size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos || text.find('/') < equals) {
+      refuse_value("--structure", text, "NAME=OPTIONS");
+    }
+    ExtractOptions own = options;
+    CLI::App app;
+    Declarations declare(app, own);
+    declare.object();
+    declare.feature();
+    declare.pyramid();
+    declare.model();
+    const std::string name = text.substr(0, equals);
+    try {
+      app.parse(text.substr(equals + 1));
+    } catch (const CLI::ParseError& e) {
+      throw CLI::ValidationError("--structure " + name, e.what());
+    }
+    if (own.isos.size() > 1 && own.isos != options.isos) {
+      refuse_value("--structure", text, "one iso-value");
+    }
+    if (own.attach != options.attach || own.init_file != options.init_file ||
+        own.seeds.size() != options.seeds.size()) {
+      refuse_value("--structure", text, "seeds, files of --init and --attach outside of it");
+    }
+    options.structures.push_back({name, own.parameters});
+  }
+  if (!options.structures.empty() && options.isos.size() > 1) {
+    throw CLI::ValidationError("--structure", "not together with several values of --iso");
+  }
 }
 
 }  // namespace plc::tools

@@ -53,6 +53,7 @@ class Command {
   int run(int argc, char** argv) {
     try {
       app_.parse(argc, argv);
+      read_structures(extract_options_);
     } catch (const CLI::Success& e) {
       return app_.exit(e);  // --help, --version
     } catch (const CLI::ParseError& e) {

@@ -7,7 +7,6 @@
 #include <cstdio>
 
 #include "tools/atomic_file.h"
-#include "tools/extract_options.h"
 #include "tools/volume_io.h"
 
 namespace plc::tools {
@@ -16,7 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json parameters_json(const plc_parameters& p, plc_space space) {
+Json parameters_json(const plc_parameters& p, ExtractOptions options) {
+  options.parameters = p;
   Json isos = Json::array();  // coarse to fine, as --level-iso takes them
   for (int h = p.level_iso_count; h-- > 0;) isos.push_back(p.level_iso[h]);
   return {{"iso", std::isnan(p.iso) ? Json() : Json(p.iso)},
@@ -29,7 +29,7 @@ Json parameters_json(const plc_parameters& p, plc_space space) {
           {"levels", p.levels},
           {"reduction", p.reduction},
           {"anisotropy", name_of(p.anisotropy, kAnisotropies)},
-          {"init", init_text(p)},
+          {"init", init_text(options)},
           {"curvature", p.curvature},
           {"spring", p.spring},
           {"rest_length", rest_length_text(p)},
@@ -47,7 +47,7 @@ Json parameters_json(const plc_parameters& p, plc_space space) {
           {"calm_speed", p.calm_speed},
           {"max_iterations", p.max_iterations},
           {"late_bubbles", p.late_bubbles != 0},
-          {"space", name_of(space, kSpaces)}};
+          {"space", name_of(options.space, kSpaces)}};
 }
 
 plc_level_report level_of(const plc_surface* surface, int index) {
@@ -110,6 +110,12 @@ std::string format(const char* pattern, Values... values) {
   return line.data();
 }
 
+std::string late_text(const plc_level_report& level) {
+  if (level.late_bubbles + level.late_cavities == 0) return "";
+  return format(", %" PRId64 " late bubbles and %" PRId64 " cavities of %.0f mm3",
+                level.late_bubbles, level.late_cavities, level.late_volume);
+}
+
 }  // namespace
 
 int64_t peak_rss_bytes() {
@@ -123,7 +129,8 @@ std::string hash_text(uint64_t hash) {
 }
 
 Json make_report(const plc_context* context, const plc_image& image, const plc_surface* surface,
-                 const plc_measures& measures, const Timings& timings, plc_space space) {
+                 const plc_measures& measures, const Timings& timings,
+                 const ExtractOptions& options) {
   plc_parameters parameters{};
   parameters.struct_size = sizeof parameters;
   plc_surface_parameters(surface, &parameters);
@@ -136,7 +143,7 @@ Json make_report(const plc_context* context, const plc_image& image, const plc_s
   }
   return {{"pellicle", plc_version_string()},
           {"input", input_json(image, surface)},
-          {"parameters", parameters_json(parameters, space)},
+          {"parameters", parameters_json(parameters, options)},
           {"levels", levels},
           {"surface", surface_json(measures)},
           {"seconds",
@@ -169,11 +176,14 @@ std::string summary(const plc_image& image, const plc_surface* surface, const pl
              image.spacing[2]);
   for (int i = 0; i < plc_surface_level_count(surface); ++i) {
     const plc_level_report level = level_of(surface, i);
-    text += format("level %d  %" PRId64 " x %" PRId64 " x %" PRId64 ", iso %.5g: %" PRId64
-                   " iterations, %" PRId64 " vertices, %.2f s%s\n",
-                   level.level, level.dims[0], level.dims[1], level.dims[2], level.iso,
-                   level.iterations, level.vertices, level.seconds_total,
-                   level.converged != 0 ? "" : ", stopped at the most iterations");
+    text += format("level %d  %" PRId64 " x %" PRId64 " x %" PRId64 "%s: %" PRId64
+                   " iterations, %" PRId64 " vertices, %.2f s%s%s\n",
+                   level.level, level.dims[0], level.dims[1], level.dims[2],
+                   std::isnan(level.iso) ? "" : format(", iso %.5g", level.iso).c_str(),
+                   level.iterations, level.vertices, level.seconds_total, late_text(level).c_str(),
+                   level.converged != 0  ? ""
+                   : level.vertices == 0 ? ", holds no surface"
+                                         : ", stopped at the most iterations");
   }
   text += format("surface  %" PRId64 " vertices, %" PRId64 " faces, components %" PRId64
                  ", genus %" PRId64 ", area %.1f mm2, volume %.1f mm3\n",

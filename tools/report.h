@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/pellicle.h"
+#include "tools/extract_options.h"
 
 namespace plc::tools {
 
@@ -16,10 +17,11 @@ int64_t peak_rss_bytes();
 // As 16 hexadecimal digits.
 std::string hash_text(uint64_t hash);
 
-// `space` is what the mesh was written in; measures are of the surface in patient space (mm).
+// `options` are those of the run, of which the parameters are not read; measures are of the surface
+// in patient space (mm).
 nlohmann::ordered_json make_report(const plc_context* context, const plc_image& image,
                                    const plc_surface* surface, const plc_measures& measures,
-                                   const Timings& timings, plc_space space);
+                                   const Timings& timings, const ExtractOptions& options);
 
 // Atomically. Throws Failure.
 void write_report(const std::string& path, const nlohmann::ordered_json& report);
