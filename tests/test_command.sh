@@ -158,7 +158,7 @@ option --threads 1000000
 option --simd mmx
 option --colour blue
 extract "report in no folder" "missing/report.json" ball.nrrd --iso 0.5 --report missing/report.json
-extract "report that is the mesh" "both" ball.nrrd --iso 0.5 --report out/mesh.ply
+extract "report that is the mesh" "twice" ball.nrrd --iso 0.5 --report out/mesh.ply
 extract "no iso" "iso" ball.nrrd
 extract "iso that is no number" "iso" ball.nrrd --iso bone
 extract "iso that is not finite" "iso" ball.nrrd --iso nan
