@@ -89,9 +89,9 @@ inline void choose_bubbles(Run& run, Random& random) {
   auto& start = run.recovery.start;
   for (size_t a = 0; a < 3; ++a) {
     const double step = physical ? spacing[a] / finest : 1;
-    // 3.9 delta apart the radius is 1.2 delta; voxels of coarse levels, which kMetric lives in, are
+    // 3.9 delta apart the radius is 1.2 delta. Voxels of coarse levels, which kMetric lives in, are
     // longer than they should be where sizes are rounded.
-    const double room = static_cast<double>(run.volume.dims[a]) * step / (4.4 * delta);
+    const double room = static_cast<double>(run.volume.dims[a]) * step / (5 * delta);
     if (room < 1) return;
     start.bubbles[a] =
         static_cast<int>(random.integer(1, std::min(static_cast<int64_t>(room), int64_t{6})));
