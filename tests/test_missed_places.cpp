@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "engine/schedule.h"
+#include "tests/sample_scenes.h"
 #include "tests/sample_surfaces.h"
-#include "tests/sample_volumes.h"
 
 namespace {
 
@@ -14,54 +14,8 @@ using plc::ImageView;
 using plc::Mesh;
 using plc::Missed;
 using plc::MissedPlaces;
-using samples::Soup;
-
-struct Ball {
-  double x, y, z, radius;
-};
-
-// An image in voxels of mesh space; 1/2 on the surfaces of balls, larger inside.
-struct Scene {
-  std::array<int32_t, 3> dims{40, 24, 24};
-  std::array<float, 3> scale{1, 1, 1};  // voxels per mesh unit
-  std::vector<float> values;
-
-  // Balls one after the other: solid, or (radius < 0) hollowed out of what is there.
-  explicit Scene(const std::vector<Ball>& balls, std::array<float, 3> voxels = {1, 1, 1})
-      : scale(voxels) {
-    for (size_t a = 0; a < 3; ++a) {
-      dims[a] = static_cast<int32_t>(static_cast<float>(dims[a]) * scale[a]);
-    }
-    for (int32_t z = 0; z < dims[2]; ++z) {
-      for (int32_t y = 0; y < dims[1]; ++y) {
-        for (int32_t x = 0; x < dims[0]; ++x) values.push_back(value(balls, {x, y, z}));
-      }
-    }
-  }
-  ImageView view() const {
-    ImageView v;
-    v.data = values.data();
-    for (size_t a = 0; a < 3; ++a) {
-      v.dims[a] = dims[a];
-      v.scale[a] = scale[a];
-    }
-    return v;
-  }
-
- private:
-  float value(const std::vector<Ball>& balls, const std::array<int32_t, 3>& at) const {
-    double best = 0;
-    for (const Ball& b : balls) {
-      const double depth =
-          std::abs(b.radius) - samples::norm(at[0] / static_cast<double>(scale[0]) - b.x,
-                                             at[1] / static_cast<double>(scale[1]) - b.y,
-                                             at[2] / static_cast<double>(scale[2]) - b.z);
-      const double solid = std::clamp(0.5 + 0.25 * depth, 0.0, 1.0);
-      best = b.radius > 0 ? std::max(best, solid) : std::min(best, 1 - solid);
-    }
-    return static_cast<float>(best);
-  }
-};
+using samples::Ball;
+using samples::Scene;
 
 constexpr float kIso = 0.5F;
 constexpr float kClearance = 2;
@@ -176,7 +130,7 @@ TEST_CASE("places that hold no ball of the radius are left out, whatever their e
   // A sheet of one voxel, larger than the ball: nothing for 0.6, enough for 0.4.
   Scene sheet({kMain});
   for (int32_t z = 2; z < 22; ++z) {
-    for (int32_t y = 2; y < 22; ++y) sheet.values[static_cast<size_t>((z * 24 + y) * 40 + 30)] = 1;
+    for (int32_t y = 2; y < 22; ++y) sheet.at(30, y, z) = 1;
   }
   CHECK(find(mesh, sheet, kClearance, 0.6F).count[kPart] == 0);
   CHECK(find(mesh, sheet, kClearance, 0.4F).count[kPart] == 1);
@@ -188,7 +142,7 @@ TEST_CASE("a ball between the voxels' centres fits as well as one about a centre
   Scene scene({kMain});
   for (const int32_t z : {12, 13}) {
     for (const int32_t y : {12, 13}) {
-      for (const int32_t x : {30, 31}) scene.values[static_cast<size_t>((z * 24 + y) * 40 + x)] = 1;
+      for (const int32_t x : {30, 31}) scene.at(x, y, z) = 1;
     }
   }
   Mesh mesh;
@@ -205,7 +159,7 @@ TEST_CASE("parts that touch by a corner of a voxel are one, parts a voxel apart 
       for (int32_t z = from; z < from + 4; ++z) {
         for (int32_t y = from; y < from + 4; ++y) {
           for (int32_t x = 20 + from; x < 24 + from; ++x) {
-            scene.values[static_cast<size_t>((z * 24 + y) * 40 + x)] = 1;
+            scene.at(x, y, z) = 1;
           }
         }
       }
