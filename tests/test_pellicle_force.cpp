@@ -9,6 +9,22 @@
 
 using namespace samples;
 
+namespace {
+
+// How far the surface reaches from the middle of the image on each of its axes, mm.
+Point extents(const plc_surface* surface, const plc_image& image) {
+  const auto xyz = positions(surface, PLC_SPACE_VOXEL);
+  Point most{};
+  for (size_t i = 0; i < xyz.size(); ++i) {
+    const size_t a = i % 3;
+    const double middle = static_cast<double>(image.dims[a] - 1) / 2;
+    most[a] = std::max(most[a], std::abs(static_cast<double>(xyz[i]) - middle) * image.spacing[a]);
+  }
+  return most;
+}
+
+}  // namespace
+
 TEST_CASE("a force of 1 is that of attraction 1 on a value a window away from iso", "[pellicle]") {
   // The surface rests where both cancel: 0.1 outward at the value 0.4, 20 % further out.
   const Context context = make_context();
@@ -37,17 +53,24 @@ TEST_CASE("a force of 1 is that of attraction 1 on a value a window away from is
     CAPTURE(static_cast<int>(m.anisotropy), static_cast<int>(m.space));
     CHECK(std::cbrt(after / before) == Approx(1.2).epsilon(0.015));
     // On all axes alike.
-    const auto xyz = positions(pushed.get(), PLC_SPACE_VOXEL);
-    Point most{};
-    for (size_t i = 0; i < xyz.size(); ++i) {
-      const size_t a = i % 3;
-      const double mm =
-          std::abs(static_cast<double>(xyz[i]) - static_cast<double>(image.dims[a] - 1) / 2) *
-          image.spacing[a];
-      most[a] = std::max(most[a], mm);
-    }
+    const Point most = extents(pushed.get(), image);
     for (const double extent : most) CHECK(extent == Approx(1.2 * kRadius).epsilon(0.05));
   }
+}
+
+TEST_CASE("a force in mm on a mesh in voxels is less along the longer voxels", "[pellicle]") {
+  const Context context = make_context();
+  const Volume volume = ball({28, 28, 14}, {1, 1, 2});
+  const plc_image image = image_of(volume);
+  Host host = pushing(0.1F);
+  const plc_extras extras = extras_of(host);  // LPS
+  plc_parameters p = gentle();
+  p.anisotropy = PLC_ANISOTROPY_VOXEL;
+  const Surface pushed = extract(context.get(), image, p, &extras);
+  const Point most = extents(pushed.get(), image);
+  CHECK(most[0] == Approx(1.2 * kRadius).epsilon(0.05));
+  CHECK(most[1] == Approx(1.2 * kRadius).epsilon(0.05));
+  CHECK(most[2] == Approx(1.1 * kRadius).epsilon(0.05));
 }
 
 TEST_CASE(

@@ -18,14 +18,16 @@ using reference::operator-;
 using reference::Point;
 using reference::to_point;
 
+constexpr float kMass = 1.5F, kDamping = 0.8F;
+
 // Packed positions and unit normals around the origin, not in any order of space.
 struct Vertices {
   std::vector<plc::Packed> at;
-  Streams3 normal, force;
+  Streams3 velocity, normal, force;
 
   explicit Vertices(uint32_t count) : at(count) {
     samples::Random random(7);
-    for (Streams3* s : {&normal, &force}) s->resize(count);
+    for (Streams3* s : {&velocity, &normal, &force}) s->resize(count);
     for (uint32_t v = 0; v < count; ++v) {
       const auto part = [&](double most) {
         return static_cast<float>(random.uniform(-most, most));
@@ -34,7 +36,11 @@ struct Vertices {
       const Vec3 n{part(1), part(1), part(1)};
       normal.set(v, n * (1 / plc::length(n)));
       force.set(v, {part(1), part(1), part(1)});
+      velocity.set(v, {part(0.5), part(0.5), part(0.5)});
     }
+  }
+  void attach(const UserConstraints& user, uint32_t begin, uint32_t end) {
+    plc::attach(user, {velocity, kMass, kDamping}, at.data(), normal, begin, end, force);
   }
   uint32_t count() const { return static_cast<uint32_t>(at.size()); }
 };
@@ -52,9 +58,9 @@ UserConstraints random_attachments(int count, double largest) {
 }
 
 // The formula of the header, in double.
-Point expected_pull(const UserConstraints& user, Vec3 position, Vec3 normal) {
+Point expected_pull(const UserConstraints& user, Vec3 position, Vec3 velocity, Vec3 normal) {
   const Point x = to_point(position), n = to_point(normal);
-  double weights = 0, pull = 0;
+  double weights = 0, stiffness = 0, pull = 0;
   for (const Attachment& a : user.attachments) {
     const Point way = to_point(a.place) - x;
     double squared = 0;
@@ -65,9 +71,13 @@ Point expected_pull(const UserConstraints& user, Vec3 position, Vec3 normal) {
     if (squared >= r * r) continue;
     const double w = std::pow(1 - squared / (r * r), 2);
     weights += w;
+    stiffness += w * static_cast<double>(a.strength);
     pull += w * static_cast<double>(a.strength) * reference::dot(way, n);
   }
-  return n * (pull / std::max(1.0, weights));
+  const double most = std::max(1.0, weights);
+  const double critical = 2 * std::sqrt(stiffness / most * static_cast<double>(kMass));
+  const double damping = std::max(0.0, critical - static_cast<double>(kDamping));
+  return n * (pull / most - damping * reference::dot(to_point(velocity), n));
 }
 
 Vec3 at(const plc::Packed& p) {
@@ -80,7 +90,8 @@ Vec3 pull_at(const UserConstraints& user, Vec3 p, Vec3 n) {
   one.at[0] = {p.x, p.y, p.z, 0};
   one.normal.set(0, n);
   one.force.set(0, {});
-  plc::attach(user, one.at.data(), one.normal, 0, 1, one.force);
+  one.velocity.set(0, {});
+  one.attach(user, 0, 1);
   return one.force.at(0);
 }
 
@@ -123,10 +134,11 @@ TEST_CASE("attachments add the pull of the formula to what is there", "[user_con
     user.millimetres = mm;
     Vertices vertices(500);
     const Vertices before(500);
-    plc::attach(user, vertices.at.data(), vertices.normal, 0, vertices.count(), vertices.force);
+    vertices.attach(user, 0, vertices.count());
     int pulled = 0;
     for (uint32_t v = 0; v < vertices.count(); ++v) {
-      const Point pull = expected_pull(user, at(before.at[v]), before.normal.at(v));
+      const Point pull =
+          expected_pull(user, at(before.at[v]), before.velocity.at(v), before.normal.at(v));
       const Point force = to_point(vertices.force.at(v)) - to_point(before.force.at(v));
       if (reference::distance(force, pull) > 1e-5) FAIL("vertex " << v);
       pulled += reference::length(pull) > 0.01 ? 1 : 0;
@@ -142,13 +154,13 @@ TEST_CASE(
   UserConstraints user = random_attachments(25, 4);
   user.millimetres = {0.7F, 1, 2};
   Vertices whole(512), blocks(512), single(512);
-  plc::attach(user, whole.at.data(), whole.normal, 0, 512, whole.force);
+  whole.attach(user, 0, 512);
   for (uint32_t b = 0; b < 512; b += 16) {
-    plc::attach(user, blocks.at.data(), blocks.normal, b, b + 16, blocks.force);
+    blocks.attach(user, b, b + 16);
   }
   // Boxes of one vertex: all that do not reach it are rejected.
   for (uint32_t v = 0; v < 512; ++v) {
-    plc::attach(user, single.at.data(), single.normal, v, v + 1, single.force);
+    single.attach(user, v, v + 1);
   }
   const Vertices untouched(512);
   int same = 0;
@@ -159,7 +171,7 @@ TEST_CASE(
   }
   CHECK(same > 50);
   CHECK(same < 480);
-  plc::attach(user, whole.at.data(), whole.normal, 5, 5, whole.force);  // nothing to do
+  whole.attach(user, 5, 5);  // nothing to do
 }
 
 TEST_CASE("only the part along the normal pulls, towards the place from either side",
@@ -217,7 +229,7 @@ TEST_CASE("the strongest attachment shortens the time step", "[user_constraints]
   // The top vertex is an oscillator along z: one step of Runge-Kutta 4.
   const auto acceleration = [](double z, double speed) {
     const double w = std::pow(1 - (6.1 - z) * (6.1 - z), 2);
-    return w * 20 * (6.1 - z) - 0.5 * speed;
+    return w * 20 * (6.1 - z) - 2 * std::sqrt(20 * w) * speed;  // with gamma: critical
   };
   const double z = 6;
   const double k1 = acceleration(z, 0), v2 = dt / 2 * k1;
@@ -240,6 +252,27 @@ TEST_CASE("an attachment draws the surface through its place", "[user_constraint
   CAPTURE(top.x, top.y, top.z);
   CHECK(plc::length(top - Vec3{0, 0, 7}) < 0.1F);
   CHECK(plc::length(mesh.displacement.at(kTop)) < 1e-3F);
+}
+
+TEST_CASE("vertices that strong attachments pull come to rest", "[user_constraints]") {
+  for (const float damping : {0.1F, 0.5F, 2.0F}) {
+    Mesh mesh;
+    fill_sphere(mesh);
+    UserConstraints user;
+    user.attachments.push_back({{0, 0, 7}, 3, 20});
+    plc::Model model = shrinking();
+    model.spring = 0;
+    model.curvature = 0.4F;
+    model.damping = damping;
+    REQUIRE(step(mesh, model, user, 400).ok());
+    float fastest = 0;
+    for (uint32_t v = 0; v < mesh.slots(); ++v) {
+      fastest = std::max(fastest, plc::length(mesh.displacement.at(v)));
+    }
+    CAPTURE(damping);
+    CHECK(fastest < 0.02F);
+    CHECK(plc::length(mesh.at(kTop) - Vec3{0, 0, 7}) < 0.1F);
+  }
 }
 
 TEST_CASE("pins hold what lies in their ball where it is, and nothing else", "[user_constraints]") {
