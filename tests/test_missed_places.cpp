@@ -10,7 +10,6 @@
 namespace {
 
 using plc::Buffer;
-using plc::ImageView;
 using plc::Mesh;
 using plc::Missed;
 using plc::MissedPlaces;

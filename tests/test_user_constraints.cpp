@@ -9,14 +9,10 @@
 namespace {
 
 using plc::Attachment;
-using plc::Mesh;
 using plc::Streams3;
 using plc::UserConstraints;
 using plc::Vec3;
-using reference::operator*;
-using reference::operator-;
-using reference::Point;
-using reference::to_point;
+using namespace reference;  // operators
 
 constexpr float kMass = 1.5F, kDamping = 0.8F;
 
