@@ -167,7 +167,8 @@ void Dynamics::stage_forces(int stage, const Guide& guide, uint32_t begin, uint3
   }
   image_forces(stage, guide, begin, end);
   if (guide.user == nullptr) return;
-  attach(*guide.user, stage_position(stage), mesh_.normal, begin, end, force_);
+  const Motion motion{stage == 0 ? mesh_.velocity : speed_, model_.mass, model_.damping};
+  attach(*guide.user, motion, stage_position(stage), mesh_.normal, begin, end, force_);
   if (!guide.user->force) return;
   for (uint32_t v = begin; v < end; ++v) force_.set(v, force_.at(v) + user_force_.at(v));
 }

@@ -205,7 +205,8 @@ typedef struct plc_seed {
 } plc_seed;
 
 /* A place that draws the surface near it along its normals until the surface goes through it (3.8):
- * the pull is strength times the distance along the normal, fading to 0 at the radius. */
+ * the pull is strength times the distance along the normal, fading to 0 at the radius, damped so
+ * that it does not swing. The strongest sets the time step of all: 100 is much. */
 typedef struct plc_attachment {
   double place[3];
   double radius;   /* mm, > 0 */
@@ -228,9 +229,11 @@ typedef struct plc_force_points {
 } plc_force_points;
 
 /* Writes 3 * count forces, which are 0 before, in the space of plc_extras. 1 is the pull of (7)
- * with attraction 1 on a vertex whose image value is a whole window away from iso. Four calls per
- * iteration, or more with PLC_BOUND_SCALE, all on the calling thread. Return 0 to go on, any other
- * to cancel. A force that is not finite ends the call with PLC_INVALID_ARGUMENT. */
+ * with attraction 1 on a vertex whose image value is a whole window away from iso; where the mesh
+ * lives in voxels but forces are given in mm, that is so on the axes of the finest spacing, and
+ * less on the others, whose voxels are longer. Four calls per iteration, or more with
+ * PLC_BOUND_SCALE, all on the calling thread. Return 0 to go on, any other to cancel. A force that
+ * is not finite ends the call with PLC_INVALID_ARGUMENT. */
 typedef int (*plc_force_fn)(const plc_force_points* points, float* forces, void* user);
 
 typedef struct plc_level_report plc_level_report;

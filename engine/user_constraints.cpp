@@ -1,6 +1,7 @@
 #include "engine/user_constraints.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace plc {
 
@@ -43,8 +44,8 @@ float UserConstraints::stiffness() const {
   return most;
 }
 
-void attach(const UserConstraints& user, const Packed* position, const Streams3& normal,
-            uint32_t begin, uint32_t end, Streams3& force) {
+void attach(const UserConstraints& user, const Motion& motion, const Packed* position,
+            const Streams3& normal, uint32_t begin, uint32_t end, Streams3& force) {
   if (begin == end) return;
   const std::vector<Attachment> near = reaching(user, position, begin, end);
   if (near.empty()) return;
@@ -52,6 +53,7 @@ void attach(const UserConstraints& user, const Packed* position, const Streams3&
     const Vec3 p{position[v].x, position[v].y, position[v].z};
     const Vec3 n = normal.at(v);
     float weights = 0;
+    float stiffness = 0;
     float pull = 0;
     for (const Attachment& a : near) {
       const Vec3 way = a.place - p;
@@ -59,9 +61,13 @@ void attach(const UserConstraints& user, const Packed* position, const Streams3&
       if (!(part < 1)) continue;
       const float w = (1 - part) * (1 - part);
       weights += w;
+      stiffness += w * a.strength;
       pull += w * a.strength * dot(way, n);
     }
-    force.set(v, force.at(v) + n * (pull / std::max(1.0F, weights)));
+    const float most = std::max(1.0F, weights);
+    const float critical = 2 * std::sqrt(stiffness / most * motion.mass);
+    const float damping = std::max(0.0F, critical - motion.damping);
+    force.set(v, force.at(v) + n * (pull / most - damping * dot(motion.velocity.at(v), n)));
   }
 }
 

@@ -1,4 +1,4 @@
-// The paper's equations of motion (4)-(7), evaluated directly in double.
+// The paper's equations of motion (4)-(8), evaluated directly in double.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -44,50 +44,96 @@ inline Point to_point(plc::Vec3 a) {
   return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)};
 }
 
-// An image of 24 voxels a side, its middle at the origin of the mesh, one voxel per mesh unit.
+// Grids of 24 voxels a side, their middle at the origin of the mesh, one voxel per mesh unit.
+constexpr size_t kSide = 24;
+constexpr double kMiddle = 11.5;
+
+template <typename View>
+View placed() {
+  View v;
+  for (size_t a = 0; a < 3; ++a) {
+    v.dims[a] = kSide;
+    v.offset[a] = static_cast<float>(kMiddle);
+  }
+  return v;
+}
+
+// Trilinear at p, clamped to the grid: visit(voxel, weight) for the eight voxels around it.
+template <typename Visit>
+void interpolate(const Point& p, const Visit& visit) {
+  size_t cell[3];
+  double f[3];
+  for (size_t a = 0; a < 3; ++a) {
+    const double x = std::clamp(p[a] + kMiddle, 0.0, kSide - 1.0);
+    cell[a] = std::min(static_cast<size_t>(x), kSide - 2);
+    f[a] = x - static_cast<double>(cell[a]);
+  }
+  for (size_t corner = 0; corner < 8; ++corner) {
+    const size_t dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2 & 1;
+    const double weight =
+        (dx != 0 ? f[0] : 1 - f[0]) * (dy != 0 ? f[1] : 1 - f[1]) * (dz != 0 ? f[2] : 1 - f[2]);
+    visit(((cell[2] + dz) * kSide + cell[1] + dy) * kSide + cell[0] + dx, weight);
+  }
+}
+
 struct Image {
   std::vector<float> values;
   plc::ImageView view() const {
-    plc::ImageView v;
+    auto v = placed<plc::ImageView>();
     v.data = values.data();
-    for (size_t a = 0; a < 3; ++a) {
-      v.dims[a] = 24;
-      v.offset[a] = 11.5F;
-    }
     return v;
   }
   double at(const Point& p) const {
-    size_t cell[3];
-    double f[3];
-    for (size_t a = 0; a < 3; ++a) {
-      const double x = std::clamp(p[a] + 11.5, 0.0, 23.0);
-      cell[a] = std::min(static_cast<size_t>(x), size_t{22});
-      f[a] = x - static_cast<double>(cell[a]);
-    }
     double sum = 0;
-    for (size_t corner = 0; corner < 8; ++corner) {
-      const size_t dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2 & 1;
-      const double weight =
-          (dx != 0 ? f[0] : 1 - f[0]) * (dy != 0 ? f[1] : 1 - f[1]) * (dz != 0 ? f[2] : 1 - f[2]);
-      sum += weight *
-             static_cast<double>(values[((cell[2] + dz) * 24 + cell[1] + dy) * 24 + cell[0] + dx]);
-    }
+    interpolate(p,
+                [&](size_t i, double weight) { sum += weight * static_cast<double>(values[i]); });
     return sum;
   }
 };
+
+// Pi_gradI of (8): vectors in the lengths of the forces.
+struct Gradient {
+  std::vector<plc::Packed> vectors;
+  plc::GradientView view() const {
+    auto v = placed<plc::GradientView>();
+    v.data = vectors.data();
+    return v;
+  }
+  Point at(const Point& p) const {
+    Point sum{};
+    interpolate(p, [&](size_t i, double weight) {
+      const plc::Packed& g = vectors[i];
+      sum = sum + to_point({g.x, g.y, g.z}) * weight;
+    });
+    return sum;
+  }
+};
+
+// Vectors of length up to 1 that turn from voxel to voxel.
+inline Gradient whirl() {
+  Gradient g;
+  samples::Random random(5);
+  const auto part = [&] { return static_cast<float>(random.uniform(-0.57, 0.57)); };
+  for (size_t i = 0; i < kSide * kSide * kSide; ++i)
+    g.vectors.push_back({part(), part(), part(), 0});
+  return g;
+}
 
 inline Image ball() {
   return {samples::sphere_potential(samples::empty_volume({24, 24, 24}), 0.3).values};
 }
 
-// The model's own step, word for word from the paper.
+// The model's own step, word for word from the paper, in the lengths of the forces: a point of the
+// mesh lies at metric * point there. Results are of the mesh.
 class Reference {
  public:
-  Reference(const Mesh& mesh, const Model& model, const Image& image, double iso)
-      : mesh_(mesh), model_(model), image_(image), iso_(iso) {
+  Reference(const Mesh& mesh, const Model& model, const Image& image, double iso,
+            const Gradient* gradient = nullptr, const plc::Metric& metric = {})
+      : mesh_(mesh), model_(model), image_(image), gradient_(gradient), iso_(iso) {
+    metric_ = to_point({metric.x, metric.y, metric.z});
     for (uint32_t v = 0; v < mesh.slots(); ++v) {
-      x_.push_back(to_point(mesh.at(v)));
-      v_.push_back(to_point(mesh.velocity.at(v)));
+      x_.push_back(to_force(to_point(mesh.at(v))));
+      v_.push_back(to_force(to_point(mesh.velocity.at(v))));
     }
     for (uint32_t v = 0; v < mesh.slots(); ++v) n_.push_back(normal(v));
     rest_ = rest_length();
@@ -106,8 +152,8 @@ class Reference {
     displacement.assign(count, {});
     velocity.assign(count, {});
     for (size_t i = 0; i < count; ++i) {
-      displacement[i] = (v_[i] + v2[i] * 2 + v3[i] * 2 + v4[i]) * (dt / 6);
-      velocity[i] = v_[i] + (k1[i] + k2[i] * 2 + k3[i] * 2 + k4[i]) * (dt / 6);
+      displacement[i] = to_mesh((v_[i] + v2[i] * 2 + v3[i] * 2 + v4[i]) * (dt / 6));
+      velocity[i] = to_mesh(v_[i] + (k1[i] + k2[i] * 2 + k3[i] * 2 + k4[i]) * (dt / 6));
     }
   }
   double longest() const {
@@ -124,6 +170,7 @@ class Reference {
         velocity[i] = velocity[i] * (fastest / length(velocity[i]));
     }
   }
+  // Without a metric.
   double energy(double dt) const {
     double sum = 0;
     for (size_t i = 0; i < x_.size(); ++i) {
@@ -136,6 +183,12 @@ class Reference {
   Points displacement, velocity;
 
  private:
+  Point to_force(const Point& p) const {
+    return {p[0] * metric_[0], p[1] * metric_[1], p[2] * metric_[2]};
+  }
+  Point to_mesh(const Point& p) const {
+    return {p[0] / metric_[0], p[1] / metric_[1], p[2] / metric_[2]};
+  }
   Point normal(uint32_t v) const {
     Point sum{};
     const auto ring = mesh_.ring(v);
@@ -173,8 +226,16 @@ class Reference {
       spring = spring + (x[w] - x[v]) * ((l - rest_) / l);
     }
     const double attraction =  // (7)
-        mesh_.delta * static_cast<double>(model_.attraction) * (iso_ - image_.at(x[v]));
-    return curvature * static_cast<double>(model_.curvature) +
+        mesh_.delta * static_cast<double>(model_.attraction) * (iso_ - image_.at(to_mesh(x[v])));
+    Point along{};  // (8)
+    if (gradient_ != nullptr) {
+      const Point g = gradient_->at(to_mesh(x[v]));
+      const Point normal = n_[v] * dot(g, n_[v]);
+      along = (normal * static_cast<double>(model_.gradient_normal) +
+               (g - normal) * static_cast<double>(model_.gradient_tangent)) *
+              mesh_.delta;
+    }
+    return along + curvature * static_cast<double>(model_.curvature) +
            spring * static_cast<double>(model_.spring) + n_[v] * attraction;
   }
   // (4)
@@ -195,6 +256,8 @@ class Reference {
   const Mesh& mesh_;
   const Model& model_;
   const Image& image_;
+  const Gradient* gradient_;
+  Point metric_{};
   double iso_, rest_ = 0;
   Points x_, v_, n_;
 };

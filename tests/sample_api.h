@@ -48,9 +48,16 @@ inline plc_parameters parameters(double iso, int levels) {
   return p;
 }
 
-inline Surface extract(plc_context* context, const plc_image& image, const plc_parameters& p) {
+inline plc_extras no_extras() {
+  plc_extras extras;
+  plc_extras_defaults(&extras);
+  return extras;
+}
+
+inline Surface extract(plc_context* context, const plc_image& image, const plc_parameters& p,
+                       const plc_extras* extras = nullptr) {
   plc_surface* surface = nullptr;
-  const plc_status status = plc_extract(context, &image, &p, nullptr, &surface);
+  const plc_status status = plc_extract(context, &image, &p, extras, &surface);
   INFO(plc_context_message(context));
   REQUIRE(status == PLC_OK);
   return Surface(surface);

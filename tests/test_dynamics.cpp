@@ -1,4 +1,4 @@
-// Dynamics against the paper's equations (4)-(7), evaluated directly in double.
+// Dynamics against the paper's equations (4)-(8), evaluated directly in double.
 #include "engine/dynamics.h"
 
 #include <array>
@@ -17,6 +17,7 @@ using plc::RestLength;
 
 using reference::ball;
 using reference::distance;
+using reference::Gradient;
 using reference::Image;
 using reference::Points;
 using reference::Reference;
@@ -73,6 +74,41 @@ void check_step(const Model& model) {
   CHECK(dynamics.energy() == Approx(reference.energy(dt)).epsilon(1e-4));
 }
 
+Model gradient_model(float normal, float tangent) {
+  Model model;
+  model.spring = 0.05F;
+  model.gradient_normal = normal;
+  model.gradient_tangent = tangent;
+  model.max_move = 1;
+  model.time_step = 0.5F;
+  return model;
+}
+
+// The same with the gradient force and a metric.
+void check_guided(const Model& model, const Gradient* gradient, const plc::Metric& metric,
+                  double delta) {
+  const Image image = ball();
+  Mesh mesh;
+  fill(mesh, delta);
+  Reference reference(mesh, model, image, static_cast<double>(kIso), gradient, metric);
+  const auto dt = static_cast<double>(plc::stable_time_step(model));
+  reference.step(dt);
+  const double bound = static_cast<double>(model.max_move) * delta;
+  reference.clamp(bound, bound / dt);
+  const plc::Schedule schedule(1);
+  plc::Dynamics dynamics(mesh, schedule, plc::best_simd_target(), model);
+  plc::Guide guide;
+  if (model.attraction != 0) guide.image = image.view();
+  guide.iso = kIso;
+  if (gradient != nullptr) guide.gradient = gradient->view();
+  guide.metric = metric;
+  plc::Seconds seconds;
+  REQUIRE(dynamics.step(guide, seconds).ok());
+  CAPTURE(model.gradient_normal, model.gradient_tangent, metric.x, metric.z, delta);
+  CHECK(difference(mesh.displacement, reference.displacement) < 4e-6);
+  CHECK(difference(mesh.velocity, reference.velocity) < 1e-5);
+}
+
 }  // namespace
 
 TEST_CASE("a step follows equations (4) to (7) for every rest length", "[dynamics]") {
@@ -114,6 +150,77 @@ TEST_CASE("mass, damping, time step and the attraction's sign enter as written",
         check_step(model);
       }
     }
+  }
+}
+
+TEST_CASE("the gradient force enters as (8) has it, along the normal and across", "[dynamics]") {
+  const Gradient gradient = reference::whirl();
+  for (const auto& [normal, tangent] :
+       {std::array{0.6F, 0.0F}, std::array{0.0F, -0.4F}, std::array{-0.3F, 0.7F}}) {
+    for (const double delta : {1.0, 0.6}) {
+      Model model = gradient_model(normal, tangent);
+      check_guided(model, &gradient, {}, delta);
+      model.attraction = 0;  // alone: the image is not read
+      check_guided(model, &gradient, {}, delta);
+    }
+  }
+}
+
+TEST_CASE("a step without a gradient image takes no force of its coefficients", "[dynamics]") {
+  check_guided(gradient_model(0.6F, 0.3F), nullptr, {}, 1);
+}
+
+TEST_CASE("a metric makes the step that of the mesh in the forces' lengths, for every force",
+          "[dynamics]") {
+  const Gradient gradient = reference::whirl();
+  for (const plc::Metric& metric : {plc::Metric{1, 1, 3}, plc::Metric{1.3F, 0.8F, 2}}) {
+    for (const RestLength rest : {RestLength::kZero, RestLength::kMean, RestLength::kValue}) {
+      Model model = gradient_model(0.3F, 0.2F);
+      model.rest_length = rest;
+      model.rest_length_value = 1.4F;
+      check_guided(model, nullptr, metric, 0.7);
+      check_guided(model, &gradient, metric, 0.7);
+    }
+  }
+}
+
+TEST_CASE("the same surface moves alike in millimetres and in voxels under a metric",
+          "[dynamics]") {
+  // The same voxels twice: 2 mesh units long on z, or 1 mesh unit and twice as long for forces.
+  const Image image = ball();
+  const Gradient gradient = reference::whirl();
+  Mesh voxels, millimetres;
+  fill(voxels, 1, false);
+  fill(millimetres, 1, false);
+  for (uint32_t v = 0; v < millimetres.slots(); ++v) {
+    const plc::Vec3 p = millimetres.at(v);
+    millimetres.place(v, {p.x, p.y, 2 * p.z});
+  }
+  Model model = gradient_model(0.2F, 0.1F);
+  model.rest_length = RestLength::kMean;
+  const plc::Schedule schedule(1);
+  plc::Dynamics in_voxels(voxels, schedule, plc::best_simd_target(), model);
+  plc::Dynamics in_millimetres(millimetres, schedule, plc::best_simd_target(), model);
+  plc::Guide guide;
+  guide.image = image.view();
+  guide.iso = kIso;
+  guide.gradient = gradient.view();
+  plc::Guide stretched = guide;
+  guide.image.scale[2] = guide.gradient.scale[2] = 0.5F;
+  stretched.metric.z = 2;
+  plc::Seconds seconds;
+  for (int i = 0; i < 3; ++i) {
+    REQUIRE(in_voxels.step(stretched, seconds).ok());
+    REQUIRE(in_millimetres.step(guide, seconds).ok());
+    float longest = 0, most = 0;
+    for (uint32_t v = 0; v < voxels.slots(); ++v) {
+      const plc::Vec3 a = voxels.displacement.at(v), b = millimetres.displacement.at(v);
+      longest = std::max(longest, plc::length(b));
+      most = std::max(most, plc::length(plc::Vec3{a.x, a.y, 2 * a.z} - b));
+    }
+    CHECK(longest < 1);  // the bound is one of the mesh, and so not the same for both
+    CHECK(longest > 0.03F);
+    CHECK(most < 3e-5F);
   }
 }
 
@@ -271,6 +378,10 @@ TEST_CASE("the time step is lowered to what the stiffest mode takes", "[dynamics
   CHECK(plc::stable_time_step(model) == Approx(2.2 * std::sqrt(3 / (2.6 * 0.4 + 24 + 1))));
   model.attraction = 7;
   CHECK(plc::stable_time_step(model) == Approx(2.2 * std::sqrt(3 / (2.6 * 0.4 + 24 + 7))));
+  CHECK(plc::stable_time_step(model, 11) == Approx(2.2 * std::sqrt(3 / (2.6 * 0.4 + 24 + 7 + 11))));
+  model.gradient_normal = 3;
+  model.gradient_tangent = -6;  // (8) changes by 2 over U_h, 1.2 delta
+  CHECK(plc::stable_time_step(model) == Approx(2.2 * std::sqrt(3 / (2.6 * 0.4 + 24 + 7 + 10))));
 }
 
 TEST_CASE("stiff models stay bounded for hundreds of steps", "[dynamics]") {
@@ -311,6 +422,13 @@ TEST_CASE("a sphere in the potential of a ball settles on the iso-surface", "[dy
 
 TEST_CASE("a step has the same bits on every thread count and SIMD target", "[dynamics]") {
   const Image image = ball();
+  const Gradient gradient = reference::whirl();
+  plc::Guide guided;
+  guided.image = image.view();
+  guided.iso = kIso;
+  guided.gradient = gradient.view();
+  guided.metric = {1, 1.2F, 2};
+  plc::Seconds seconds;
   std::vector<std::vector<float>> results;
   for (const Bound bound : {Bound::kClamp, Bound::kScale}) {
     results.clear();
@@ -318,6 +436,8 @@ TEST_CASE("a step has the same bits on every thread count and SIMD target", "[dy
       for (const plc::SimdTarget simd : plc::available_simd_targets()) {
         Model model;
         model.spring = 0.02F;
+        model.gradient_normal = 0.2F;
+        model.gradient_tangent = 0.1F;
         model.bound = bound;
         model.max_move = 0.03F;
         Mesh mesh;
@@ -326,6 +446,7 @@ TEST_CASE("a step has the same bits on every thread count and SIMD target", "[dy
         const plc::Schedule schedule(threads);
         plc::Dynamics dynamics(mesh, schedule, simd, model);
         for (int i = 0; i < 5; ++i) step(mesh, dynamics, image);
+        for (int i = 0; i < 3; ++i) REQUIRE(dynamics.step(guided, seconds).ok());
         std::vector<float> result{static_cast<float>(dynamics.energy())};
         for (uint32_t v = 0; v < mesh.slots(); ++v) result.push_back(mesh.packed[v].x);
         results.push_back(result);
