@@ -76,7 +76,7 @@ TEST_CASE("Every phantom has its default size, type and geometry", "[phantoms]")
   for (const Expected& expected :
        {Expected{"chain", {64, 64, 64}, PLC_F32}, Expected{"sierpinski", {81, 81, 81}, PLC_U8},
         Expected{"shell", {80, 80, 80}, PLC_U8}, Expected{"vessels", {256, 256, 124}, PLC_I16},
-        Expected{"blobs", {64, 64, 64}, PLC_F32}}) {
+        Expected{"blobs", {64, 64, 64}, PLC_F32}, Expected{"labels", {64, 64, 64}, PLC_U8}}) {
     CAPTURE(expected.name);
     const LoadedVolume volume = make_phantom(expected.name, {});
     CHECK(std::equal(expected.dims, expected.dims + 3, volume.image.dims));
@@ -96,11 +96,9 @@ TEST_CASE("Phantoms are the same bits everywhere", "[phantoms]") {
   options.seed = 7;
   options.type = PLC_I16;
   const std::vector<std::pair<std::string, uint64_t>> recorded = {
-      {"chain", 0x60c2f8b789ead08b},
-      {"sierpinski", 0xc1e4611efdbbf90b},
-      {"shell", 0x832a6579a9430b7e},
-      {"vessels", 0xd0d5548262450b32},
-      {"blobs", 0xa5303dc9adfffb66}};
+      {"chain", 0x60c2f8b789ead08b}, {"sierpinski", 0xc1e4611efdbbf90b},
+      {"shell", 0x832a6579a9430b7e}, {"vessels", 0xd0d5548262450b32},
+      {"blobs", 0xa5303dc9adfffb66}, {"labels", 0x7507aa4d8c060ca4}};
   for (const auto& [name, hash] : recorded) {
     CAPTURE(name);
     CHECK(fnv(make_phantom(name, options)) == hash);
@@ -178,6 +176,40 @@ TEST_CASE("Vessels are bright tubes on a darker ground", "[phantoms]") {
   CHECK(share < 0.1);
 }
 
+TEST_CASE("The labels are cells of a ball and one more inside a cell", "[phantoms]") {
+  for (const plc_voxel_type type : {PLC_U8, PLC_I16, PLC_U16, PLC_I32, PLC_F32}) {
+    CAPTURE(type);
+    PhantomOptions options;
+    options.count = 5;
+    options.type = type;
+    options.size[2] = 40;
+    options.spacing[2] = 1.6;
+    const LoadedVolume volume = make_phantom("labels", options);
+    std::vector<int> labels;
+    std::vector<int> counts(7, 0);
+    for (const double value : values(volume)) {
+      labels.push_back(static_cast<int>(std::lround(value * full_scale(type))));
+      REQUIRE((labels.back() >= 0 && labels.back() <= 6));
+      ++counts[static_cast<size_t>(labels.back())];
+    }
+    CHECK(*std::min_element(counts.begin(), counts.end()) > 0);
+    const double ball = 4.0 / 3 * kPi * 28.8 * 28.8 * 28.8;
+    CHECK((64 * 64 * 40 - counts[0]) * 1.6 == Approx(ball).epsilon(0.01));
+    // The inner label's neighbours are itself and one other.
+    int other = 0;
+    for (size_t i = 0; i < labels.size(); ++i) {
+      if (labels[i] != 6) continue;
+      for (const size_t step : {size_t{1}, size_t{64}, size_t{64} * 64}) {
+        for (const int next : {labels[i - step], labels[i + step]}) {
+          if (next == 6) continue;
+          CHECK_FALSE((next == 0 || (other != 0 && next != other)));
+          other = next;
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("Noise has the mean and the deviation asked for", "[phantoms]") {
   Random random(3);
   double sum = 0;
@@ -224,6 +256,9 @@ TEST_CASE("Absurd options give one line", "[phantoms]") {
   options = {};
   options.count = 0;
   CHECK_THAT(message("blobs", options), Catch::Contains("number of blobs"));
+  CHECK_THAT(message("labels", options), Catch::Contains("number of cells"));
+  options.count = 255;  // and one more, which u8 does not hold
+  CHECK_THAT(message("labels", options), Catch::Contains("within 1 .. 254"));
   options = {};
   options.depth = 40;
   CHECK_THAT(message("sierpinski", options), Catch::Contains("depth"));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tools/command_check.h"
+#include "tools/command_labels.h"
 #include "tools/engine_handles.h"
 #include "tools/extract_inputs.h"
 #include "tools/extract_job.h"
@@ -15,6 +16,7 @@
 #include "tools/mesh_io.h"
 #include "tools/progress_line.h"
 #include "tools/report.h"
+#include "tools/surface_mesh.h"
 #include "tools/trace_file.h"
 #include "tools/volume_io.h"
 
@@ -42,19 +44,6 @@ int on_progress(const plc_progress* progress, void* user) {
   return watch.interrupt.interrupted() ? 1 : 0;
 }
 
-TriangleMesh mesh_of(const plc_surface* surface, plc_space space) {
-  TriangleMesh mesh;
-  const auto vertices = static_cast<size_t>(plc_surface_vertex_count(surface));
-  std::vector<float> xyz(3 * vertices);
-  plc_surface_positions(surface, space, xyz.data());
-  mesh.xyz.assign(xyz.begin(), xyz.end());
-  mesh.abc.resize(3 * static_cast<size_t>(plc_surface_face_count(surface)));
-  plc_surface_faces(surface, space, mesh.abc.data());
-  mesh.normals.resize(3 * vertices);
-  plc_surface_normals(surface, space, mesh.normals.data());
-  return mesh;
-}
-
 // NULL where it was cancelled.
 SurfaceHandle evolve(plc_context* context, const plc_image& image, const ExtractJob& job,
                      const ExtractInputs& inputs, const ExtractOptions& options, TraceFile& trace,
@@ -69,14 +58,6 @@ SurfaceHandle evolve(plc_context* context, const plc_image& image, const Extract
   if (status == PLC_CANCELLED) return nullptr;
   if (status != PLC_OK) throw failure_of(context, status);
   return SurfaceHandle(surface);
-}
-
-plc_measures measures_of(plc_context* context, const plc_surface* surface) {
-  plc_measures measures{};
-  measures.struct_size = sizeof measures;
-  const plc_status status = plc_surface_measure(context, surface, PLC_SPACE_LPS, &measures);
-  if (status != PLC_OK) throw failure_of(context, status);
-  return measures;
 }
 
 // Before the long run rather than after it.
@@ -183,6 +164,7 @@ class Extraction {
 
 int run_extract(const ExtractOptions& options) {
   InterruptGuard interrupt;
+  if (!options.labels.empty()) return run_labels(options, interrupt);
   return Extraction(options, interrupt).run();
 }
 

@@ -73,7 +73,7 @@ class Declarations {
          [&o = o_](const std::string& s) { o.noise = to_number("--noise", s); });
     text("--seed", "N", std::to_string(o_.seed), "Seed of shapes and noise",
          [&o = o_](const std::string& s) { o.seed = to_seed(s); });
-    text("--count", "N", "the phantom's own", "Blobs, or trees of vessels",
+    text("--count", "N", "the phantom's own", "Blobs, trees of vessels, or cells of labels",
          [&o = o_](const std::string& s) { o.count = to_integer("--count", s); });
     text("--depth", "N", "the phantom's own", "Recursion of sierpinski, branching of vessels",
          [&o = o_](const std::string& s) { o.depth = to_integer("--depth", s); });

@@ -11,6 +11,7 @@
 #include "engine/pellicle.h"
 #include "tools/command_check.h"
 #include "tools/command_extract.h"
+#include "tools/command_labels.h"
 #include "tools/command_measure.h"
 #include "tools/command_phantom.h"
 #include "tools/command_render.h"
@@ -44,6 +45,7 @@ class Command {
     phantom_ = add("phantom", "Write a synthetic test volume");
     render_ = add("render", "Draw a shaded picture of a mesh");
     add_extract_options(*extract_, extract_options_);
+    add_label_options(*extract_, extract_options_);
     add_check_options(*check_, check_options_);
     add_measure_options(*measure_, measure_options_);
     add_phantom_options(*phantom_, phantom_arguments_);

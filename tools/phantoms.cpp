@@ -219,8 +219,8 @@ LoadedVolume blobs_phantom(const PhantomOptions& options) {
 }
 
 const std::vector<std::string>& phantom_names() {
-  static const std::vector<std::string> names = {"chain", "sierpinski", "shell", "vessels",
-                                                 "blobs"};
+  static const std::vector<std::string> names = {"chain",   "sierpinski", "shell",
+                                                 "vessels", "blobs",      "labels"};
   return names;
 }
 
@@ -230,8 +230,9 @@ LoadedVolume make_phantom(const std::string& name, const PhantomOptions& options
   if (name == "shell") return shell_phantom(options);
   if (name == "vessels") return vessels_phantom(options);
   if (name == "blobs") return blobs_phantom(options);
+  if (name == "labels") return labels_phantom(options);
   throw Failure{"unknown phantom \"" + name +
-                "\" (known are chain, sierpinski, shell, vessels and blobs)"};
+                "\" (known are chain, sierpinski, shell, vessels, blobs and labels)"};
 }
 
 }  // namespace plc::tools

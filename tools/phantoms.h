@@ -17,7 +17,7 @@ struct PhantomOptions {
   std::optional<double> noise;         // sigma of added noise, in units of full scale, >= 0
   uint64_t seed = 1;                   // of shapes and noise
   std::optional<plc_voxel_type> type;  // see full_scale()
-  std::optional<int> count;            // blobs: how many; vessels: trees; 1 .. 10000
+  std::optional<int> count;            // blobs, labels: how many; vessels: trees; 1 .. 10000
   std::optional<int> depth;            // sierpinski: of recursion; vessels: of branching; 1 .. 12
 };
 
@@ -48,7 +48,13 @@ LoadedVolume vessels_phantom(const PhantomOptions& options);
 // (f32), 8 balls.
 LoadedVolume blobs_phantom(const PhantomOptions& options);
 
-// By name: chain, sierpinski, shell, vessels, blobs.
+// A label image, of values that are not in units of full scale: a ball of radius 0.45 of the smallest
+// extent in `count` Voronoi cells of random sites, labelled 1 .. count, around it 0; a ball labelled
+// count + 1 lies inside the cell that has most room around its site and reaches 0.55 as far as the
+// cell's nearest wall; 64^3 (u8), 8 cells (at most 254 in u8). Noise mixes the labels.
+LoadedVolume labels_phantom(const PhantomOptions& options);
+
+// By name: chain, sierpinski, shell, vessels, blobs, labels.
 const std::vector<std::string>& phantom_names();
 LoadedVolume make_phantom(const std::string& name, const PhantomOptions& options);
 
