@@ -131,7 +131,7 @@ awk 'BEGIN { printf "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 12 12 12\nencod
   for (i = 0; i < 1728; ++i) { x = i % 12; y = int(i / 12) % 12; z = int(i / 144)
     print (x > 1 && x < 10 && y > 1 && y < 10 && z > 1 && z < 10 ? 3 : i == 0 ? 8 : 0) } }' >speck.nrrd
 works "a speck" "$pellicle" extract --labels speck.nrrd -o out/s.ply --quiet
-grep -q "label 8: 1 voxels, .*left out" stderr || fails "a speck: not told"
+grep -q "label 8: 1 voxel, .*left out" stderr || fails "a speck: not told"
 if [ "$(wc -l <stderr)" -ne 1 ]; then fails "a speck: not one line"; fi
 if [ "$(ls out)" != s-3.ply ]; then fails "a speck: wrote $(ls out)"; fi
 find out -mindepth 1 -delete
@@ -157,6 +157,16 @@ refused "labels to no known kind" "mesh.xyz" "$pellicle" extract --labels cells.
 code=0
 "$pellicle" extract --labels one.nrrd -o out/m.ply --quiet >stdout 2>stderr || code=$?
 if [ $code -ne 2 ] || ! grep -q "no label is large enough" stderr; then fails "one voxel"; fi
+
+# ---- Ctrl-C
+"$pellicle" extract --help >stdout 2>stderr
+grep -q -- "--labels FILE" stdout || fails "help of extract: no --labels"
+works "phantom" "$pellicle" phantom labels --size 120 --count 30 -o many.nrrd
+code=0
+timeout --preserve-status -s INT 2 "$pellicle" extract --labels many.nrrd -o out/m.ply \
+  --report out/m.json --quiet >stdout 2>stderr || code=$?
+if [ $code -ne 130 ]; then fails "interrupted: exit code $code"; fi
+if [ -n "$(ls out)" ]; then fails "interrupted: leaves $(ls out)"; fi
 
 if [ $failures -gt 0 ]; then echo "$failures failures"; exit 1; fi
 echo "All as expected."

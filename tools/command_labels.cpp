@@ -111,6 +111,9 @@ class LabelExtraction {
     }
     if (!leave_out()) throw Failure{options_.labels + ": no label is large enough for a surface"};
     if (!disjoint(context_.get(), meshes()) && !separate()) return interrupted();
+    if (again_ > 0 && open_.empty() && !disjoint(context_.get(), meshes())) {
+      throw Failure{"internal error: the labels overlap, but no two of them do"};
+    }
     if (interrupt_.interrupted()) return interrupted();
     interrupt_.only_note();  // what is written from here on is whole
     line_.clear();
@@ -186,8 +189,8 @@ class LabelExtraction {
       ++left_out_;
       std::fprintf(stderr,
                    "pellicle: label %" PRId32 ": %" PRId64
-                   " voxels, too small or too thin to hold a surface: left out\n",
-                   piece.label.value, piece.label.voxels);
+                   " voxel%s, too small or too thin to hold a surface: left out\n",
+                   piece.label.value, piece.label.voxels, piece.label.voxels == 1 ? "" : "s");
     }
     return any;
   }
