@@ -16,8 +16,8 @@ struct Structure {
 };
 
 struct ExtractOptions {
-  std::string input;      // "": labels are extracted
-  std::string labels;     // "": none; else there is no input
+  std::string input;   // "": labels are extracted
+  std::string labels;  // "": none; else there is no input
   std::string output;
   std::string report;     // "": none
   std::string trace;      // "": none

@@ -48,10 +48,11 @@ LoadedVolume vessels_phantom(const PhantomOptions& options);
 // (f32), 8 balls.
 LoadedVolume blobs_phantom(const PhantomOptions& options);
 
-// A label image, of values that are not in units of full scale: a ball of radius 0.45 of the smallest
-// extent in `count` Voronoi cells of random sites, labelled 1 .. count, around it 0; a ball labelled
-// count + 1 lies inside the cell that has most room around its site and reaches 0.55 as far as the
-// cell's nearest wall; 64^3 (u8), 8 cells (at most 254 in u8). Noise mixes the labels.
+// A label image, of values that are not in units of full scale: a ball of radius 0.45 of the
+// smallest extent in `count` Voronoi cells of random sites, labelled 1 .. count, around it 0; a
+// ball labelled count + 1 lies inside the cell that has most room around its site and reaches 0.55
+// as far as the cell's nearest wall; 64^3 (u8), 8 cells (at most 254 in u8). Noise mixes the
+// labels.
 LoadedVolume labels_phantom(const PhantomOptions& options);
 
 // By name: chain, sierpinski, shell, vessels, blobs, labels.
