@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <vector>
 
 #include "engine/constants.h"
+#include "engine/mesh_append.h"
 #include "engine/refinement.h"
 
 namespace plc {
@@ -51,21 +51,11 @@ void make_sphere(Mesh& mesh, double edge, const Executor& executor) {
   }
 }
 
-// Adds a unit sphere, stretched and moved; ids in its order.
-void append(Mesh& mesh, const Mesh& sphere, Vec3 centre, Vec3 radii, bool inward) {
-  std::vector<uint32_t> id(sphere.slots());
-  for (uint32_t v = 0; v < sphere.slots(); ++v) {
-    const Vec3 p = sphere.at(v);
-    id[v] = mesh.create(centre + Vec3{p.x * radii.x, p.y * radii.y, p.z * radii.z}, {});
-  }
-  for (uint32_t v = 0; v < sphere.slots(); ++v) {
-    const Neighbors from = sphere.ring(v);
-    Neighbors ring;
-    for (uint32_t n = 0; n < from.size(); ++n) {
-      ring.push_back(id[from[inward ? from.size() - 1 - n : n]]);
-    }
-    mesh.set_ring(id[v], ring);
-  }
+// Adds a unit sphere, stretched and moved.
+void append_sphere(Mesh& mesh, const Mesh& sphere, Vec3 centre, Vec3 radii) {
+  append_mesh(mesh, sphere, false, [&](Vec3 p) {
+    return centre + Vec3{p.x * radii.x, p.y * radii.y, p.z * radii.z};
+  });
 }
 
 // Edges of initial surfaces, in delta: under (2) with room for uneven spacing.
@@ -97,11 +87,11 @@ void make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& ex
   mesh.delta = delta;
 }
 
-void append_bubble(Mesh& mesh, Vec3 centre, Vec3 radii, bool inward, const Executor& executor) {
+void append_bubble(Mesh& mesh, Vec3 centre, Vec3 radii, const Executor& executor) {
   const double radius = static_cast<double>(std::max({radii.x, radii.y, radii.z}));
   Mesh sphere;
   make_sphere(sphere, kInitialEdge * mesh.delta / radius, executor);
-  append(mesh, sphere, centre, radii, inward);
+  append_sphere(mesh, sphere, centre, radii);
 }
 
 Status make_bubbles(Mesh& mesh, const Extent& box, const std::array<int, 3>& counts, double delta,
@@ -131,7 +121,7 @@ Status make_bubbles(Mesh& mesh, const Extent& box, const std::array<int, 3>& cou
         const Vec3 centre{static_cast<float>(box.low[0] + (i + 0.5) * pitch[0]),
                           static_cast<float>(box.low[1] + (j + 0.5) * pitch[1]),
                           static_cast<float>(box.low[2] + (k + 0.5) * pitch[2])};
-        append(mesh, sphere, centre, {r, r, r}, false);
+        append_sphere(mesh, sphere, centre, {r, r, r});
       }
     }
   }

@@ -20,9 +20,9 @@ struct Extent {
 // than the ellipsoid does. mesh.delta = delta.
 void make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& executor);
 
-// Adds a sphere with edges of 1 to 2 delta to the mesh, which keeps its delta; `inward`: the wall
-// of a cavity. The caller sees to it that it is apart from the rest by (3).
-void append_bubble(Mesh& mesh, Vec3 centre, Vec3 radii, bool inward, const Executor& executor);
+// Adds an ellipsoid with edges of 1 to 2 delta to the mesh, which keeps its delta. The caller sees
+// to it that it is apart from the rest by (3).
+void append_bubble(Mesh& mesh, Vec3 centre, Vec3 radii, const Executor& executor);
 
 // counts[0] x counts[1] x counts[2] spheres over the box, apart from each other by (3).
 // kInvalidArgument when they would be too small for delta.

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <vector>
 
 #include "engine/conform.h"
 #include "engine/constants.h"
 #include "engine/iso_surface.h"
+#include "engine/measures.h"
+#include "engine/mesh_append.h"
 #include "engine/missed_places.h"
 
 namespace plc {
@@ -46,7 +50,7 @@ class Cutout {
     for (size_t a = 0; a < 3; ++a) {
       if (v[a] < 0 || v[a] >= image.dims[a]) return -1;
     }
-    const auto i = static_cast<size_t>((v[2] * image.dims[1] + v[1]) * image.dims[0] + v[0]);
+    const size_t i = voxel_index(image, v);
     const bool up = above == (kind == Missed::kPart);
     const float depth = up ? image.data[i] - iso : iso - image.data[i];
     return places.is(i, kind) ? std::max(depth, 0.0F) : -std::max(std::abs(depth), kLeast);
@@ -57,37 +61,15 @@ class Cutout {
   std::vector<float> values_;
 };
 
-void append(Mesh& mesh, const Mesh& part, bool inward) {
-  std::vector<uint32_t> id(part.slots());
-  for (uint32_t v = 0; v < part.slots(); ++v) {
-    if (part.alive(v)) id[v] = mesh.create(part.at(v), {});
+double volume_of(const Mesh& mesh, const Executor& executor) {
+  std::vector<float> xyz;
+  for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    const Vec3 p = mesh.at(v);
+    xyz.insert(xyz.end(), {p.x, p.y, p.z});
   }
-  for (uint32_t v = 0; v < part.slots(); ++v) {
-    if (!part.alive(v)) continue;
-    const Neighbors from = part.ring(v);
-    Neighbors ring;
-    for (uint32_t n = 0; n < from.size(); ++n) {
-      ring.push_back(id[from[inward ? from.size() - 1 - n : n]]);
-    }
-    mesh.set_ring(id[v], ring);
-  }
-}
-
-// Six times the volume is the sum of the faces' determinants.
-double volume_of(const Mesh& mesh) {
   const std::vector<uint32_t> faces = mesh.faces();
-  double sum = 0;
-  for (size_t i = 0; i < faces.size(); i += 3) {
-    std::array<std::array<double, 3>, 3> p;
-    for (size_t k = 0; k < 3; ++k) {
-      const Vec3 at = mesh.at(faces[i + k]);
-      p[k] = {static_cast<double>(at.x), static_cast<double>(at.y), static_cast<double>(at.z)};
-    }
-    sum += p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) +
-           p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
-           p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
-  }
-  return sum / 6;
+  return surface_measures(xyz.data(), mesh.slots(), faces.data(), faces.size() / 3, executor)
+      .volume;
 }
 
 }  // namespace
@@ -112,8 +94,8 @@ Status start_late_bubbles(const ImageView& image, float iso, bool inside_above,
     if (s.code() == ErrorCode::kInvalidData) continue;  // nothing is left of it
     if (!s.ok()) return s;
     (kind == Missed::kPart ? started.bubbles : started.cavities) += count;
-    started.volume += volume_of(part);
-    append(mesh, part, kind == Missed::kCavity);
+    started.volume += volume_of(part, schedule);
+    append_mesh(mesh, part, kind == Missed::kCavity, [](Vec3 p) { return p; });
   }
   return {};
 }

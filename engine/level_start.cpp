@@ -119,7 +119,7 @@ Status make_seeds(const StartSpec& spec, const LevelImage& level, double delta,
       }
     }
     made.push_back(e);
-    append_bubble(mesh, e.centre, e.radii, false, executor);
+    append_bubble(mesh, e.centre, e.radii, executor);
   }
   return {};
 }

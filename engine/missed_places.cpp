@@ -97,9 +97,7 @@ class Search {
   }
 
  private:
-  size_t index(const Voxel& v) const {
-    return static_cast<size_t>((v[2] * image_.dims[1] + v[1]) * image_.dims[0] + v[0]);
-  }
+  size_t index(const Voxel& v) const { return voxel_index(image_, v); }
   bool within(const Voxel& v) const {
     for (size_t a = 0; a < 3; ++a) {
       if (v[a] < 0 || v[a] >= image_.dims[a]) return false;

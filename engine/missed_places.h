@@ -13,6 +13,12 @@ namespace plc {
 
 enum class Missed : uint8_t { kPart, kCavity };
 
+// Of a voxel of the image.
+inline size_t voxel_index(const ImageView& image, const std::array<int32_t, 3>& v) {
+  const auto size = [](int32_t n) { return static_cast<size_t>(n); };
+  return (size(v[2]) * size(image.dims[1]) + size(v[1])) * size(image.dims[0]) + size(v[0]);
+}
+
 struct MissedPlaces {
   // By voxel: 0, or 1 + the kind of a place that is to get a bubble.
   Buffer<uint8_t> kind;
