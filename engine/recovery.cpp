@@ -185,9 +185,8 @@ class Recovery {
   // `added`: whether something had been missed.
   Status add_late_bubbles(LevelRecord& record, bool& added) {
     added = false;
-    if (!spec_.late_bubbles || std::isnan(guide_.iso) || energy_ > kLateEnergy * spec_.epsilon) {
-      return {};
-    }
+    const bool at_rest = mesh_.vertex_count() == 0 || energy_ <= kLateEnergy * spec_.epsilon;
+    if (!spec_.late_bubbles || std::isnan(guide_.iso) || !at_rest) return {};
     const double start = now();
     const uint32_t before = mesh_.vertex_count();
     LateBubbles late;
