@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "tools/command_check.h"
@@ -55,6 +56,25 @@ TriangleMesh mesh_of(const plc_surface* surface, plc_space space) {
   return mesh;
 }
 
+// The files of --each-level: a callback must not throw through the engine, so it keeps the failure.
+struct LevelFiles {
+  const std::string& output;
+  plc_space space;
+  std::optional<Failure> failure;
+};
+
+plc_verdict on_level(const plc_level_report* level, const plc_surface* surface, void* user) {
+  auto& files = *static_cast<LevelFiles*>(user);
+  try {
+    write_mesh(named(files.output, "level" + std::to_string(level->level)),
+               mesh_of(surface, files.space));
+  } catch (const Failure& failure) {
+    files.failure = failure;
+    return PLC_VERDICT_STOP;
+  }
+  return PLC_VERDICT_ACCEPT;
+}
+
 // NULL where it was cancelled.
 SurfaceHandle evolve(plc_context* context, const plc_image& image, const ExtractJob& job,
                      const ExtractInputs& inputs, const ExtractOptions& options, TraceFile& trace,
@@ -64,11 +84,18 @@ SurfaceHandle evolve(plc_context* context, const plc_image& image, const Extract
   plc_extras extras = inputs.extras();
   extras.progress = on_progress;
   extras.progress_user = &watch;
+  LevelFiles files{job.output, options.space, std::nullopt};
+  if (options.each_level) {
+    extras.level = on_level;
+    extras.level_user = &files;
+  }
   plc_surface* surface = nullptr;
   const plc_status status = plc_extract(context, &image, &job.parameters, &extras, &surface);
   if (status == PLC_CANCELLED) return nullptr;
   if (status != PLC_OK) throw failure_of(context, status);
-  return SurfaceHandle(surface);
+  SurfaceHandle result(surface);
+  if (files.failure) throw *files.failure;
+  return result;
 }
 
 plc_measures measures_of(plc_context* context, const plc_surface* surface) {
