@@ -9,7 +9,6 @@ run_limit=590  # seconds of one run
 
 # A folder for the files of the experiment NAME, and empty parts of the results.
 start_experiment() {
-  set -e
   experiment=$1
   dir=$out/$experiment
   mkdir -p "$dir" "$results"
@@ -33,10 +32,17 @@ say() { { echo; cat; } >>"$dir/section.part"; }
 # overview FIGURES PAPER OURS WHY: the row of the overview.
 overview() { echo "| [$experiment](#$experiment) | $1 | $2 | $3 | $4 |" >"$dir/overview.part"; }
 
-# extract RUN VOLUME OPTIONS...: a surface $dir/RUN.ply with its report and its trace.
+# extract RUN VOLUME OPTIONS...: a surface $dir/RUN.ply with its report and its trace. With KEEP=1 a
+# run of an earlier call with the same options is taken as it is: to go on after an interrupt.
 extract() {
   local name=$1 volume=$2
   shift 2
+  if [ -n "${KEEP:-}" ] && [ -e "$dir/$name.json" ] && [ -e "$dir/$name.args" ] &&
+    [ "$(cat "$dir/$name.args")" = "$volume $*" ]; then
+    return
+  fi
+  rm -f "$dir/$name.json"
+  echo "$volume $*" >"$dir/$name.args"
   echo "$name: extract $(basename "$volume") $*"
   timeout "$run_limit" "$pellicle" extract "$volume" -o "$dir/$name.ply" --report "$dir/$name.json" \
     --trace "$dir/$name.csv" --quiet "$@"
@@ -54,9 +60,11 @@ shape() {
     then "" else "s" end), genus \(.genus)"'
 }
 
-# iterations RUN: of each level, coarse to fine; a star where the most iterations ended it.
+# iterations RUN: of each level, coarse to fine; a star where the most iterations ended it, in
+# parentheses where nothing was left of the surface.
 iterations() {
-  number "$1" '[.levels[] | "\(.iterations)\(if .converged then "" else "\\*" end)"] | join(" + ")'
+  number "$1" '[.levels[] | if .vertices == 0 then "(\(.iterations))" elif .converged then
+    "\(.iterations)" else "\(.iterations)\\*" end] | join(" + ")'
 }
 
 # percent RUN OTHER FIELD: by how much a measure of RUN is off that of OTHER.
@@ -72,8 +80,8 @@ table() {
     echo "| run | iterations | vertices | components | genus | area (mm2) | volume (mm3) | late bubbles, cavities | seconds | peak (MiB) | hash |"
     echo "|---|---|---|---|---|---|---|---|---|---|---|"
     for pair in "$@"; do
-      jq -r --arg label "${pair#*=}" --arg iterations "$(iterations "${pair%%=*}")" '
-        [$label, $iterations, .surface.vertices, .surface.components, .surface.genus,
+      jq -r --arg run "${pair#*=}" --arg iterations "$(iterations "${pair%%=*}")" '
+        [$run, $iterations, .surface.vertices, .surface.components, .surface.genus,
          (.surface.area | round), (.surface.volume | round),
          ([.levels[].late.bubbles] | add | tostring) + ", " +
            ([.levels[].late.cavities] | add | tostring),
@@ -112,7 +120,7 @@ picture() {
   rows=$(((tiles + columns - 1) / columns))
   {
     # The terminal of libgd writes a palette: a third of the bytes of true colour.
-    echo "set terminal png font ',11' size $((300 * columns)), $((330 * rows))"
+    echo "set terminal png font ',11' size $((280 * columns)), $((310 * rows))"
     echo "set output '$results/$1.png'"
     echo "set multiplot layout $rows, $columns"
     echo "unset key; unset tics; unset border; set size ratio -1; set margins 0.5, 0.5, 0.5, 2"
@@ -134,7 +142,8 @@ write_results() {
     echo "# The experiments of the paper"
     echo
     echo "Written by \`perf/experiments\`; each section tells when, of which commit and on what machine."
-    echo "Iterations are those of each level, coarse to fine; a star: ended by the most iterations allowed."
+    echo "Iterations are those of each level, coarse to fine; a star: ended by the most iterations"
+    echo "allowed; in parentheses: nothing was left of the surface on this level."
     echo "Seconds are wall clock of the evolution; the machine was shared with other work: expect half or double."
     echo
     echo "| experiment | figures | the paper reports | we get | why they differ |"
