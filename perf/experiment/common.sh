@@ -5,7 +5,7 @@ results=$root/perf/results
 out=${EXPERIMENTS:-$root/out/experiments}
 pellicle=${PELLICLE:-$root/build/tools/pellicle}
 head_ct=/usr/share/doc/invesalius-examples/examples/Cranium.inv3
-run_limit=590  # seconds of one run
+run_limit=${RUN_LIMIT:-590}  # seconds of one run
 
 # A folder for the files of the experiment NAME, and empty parts of the results.
 start_experiment() {
