@@ -52,7 +52,8 @@ tile direct-100 "direct, iteration 100" "${view[@]}"
 tile direct "direct, at the end" "${view[@]}"
 tile late "coarse to fine, late bubbles" "${view[@]}"
 for level in 3 2 1; do tile fine-level$level "coarse to fine, I_$level" "${view[@]}"; done
-picture head 3
+tile fine "coarse to fine, I_0" "${view[@]}"
+picture head 4
 curves figure17 "
 set logscale y
 set title 'mean kinetic energy along normals'

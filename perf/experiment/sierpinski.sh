@@ -9,6 +9,6 @@ tile cube "I_0" --azimuth 30 --elevation 25
 overview 14 \
   "The areas of higher density come first, the cube's holes level by level; no numbers." \
   "The same order of events: $(iterations cube) iterations, $(shape cube)." \
-  "The paper draws the result and counts nothing. Walls and holes of one voxel open and close for ever on the full image: the most iterations end it, and the genus depends on the one at which they do."
+  "The paper draws the result and counts nothing. Walls and holes of one voxel open and close for ever on the two finest images: the most iterations end it, and the genus depends on the one at which they do."
 table "cube=coarse to fine"
 picture sierpinski 4
