@@ -250,7 +250,7 @@ TEST_CASE("late bubbles have the same bits for any number of threads", "[late_bu
     volumes.push_back(start(mesh, scene, tried, threads).volume);
     hashes.push_back(plc::state_hash(mesh));
   }
-  for (const size_t i : {1, 2}) {
+  for (const size_t i : std::initializer_list<size_t>{1, 2}) {
     CHECK(hashes[i] == hashes[0]);
     CHECK(volumes[i] == volumes[0]);
   }

@@ -310,8 +310,9 @@ TEST_CASE("normals of a metric are those of the surface with its axes stretched"
   }
   const auto run = [&](const auto& kernel) {
     std::array<Streams, 2> to{Streams(n, 0), Streams(n, 0)};
-    kernel(metric, normal.x.data(), normal.y.data(), normal.z.data(), 0, n, to[0].x.data(),
-           to[0].y.data(), to[0].z.data(), to[1].x.data(), to[1].y.data(), to[1].z.data());
+    kernel(metric, normal.x.data(), normal.y.data(), normal.z.data(), uint32_t{0}, n,
+           to[0].x.data(), to[0].y.data(), to[0].z.data(), to[1].x.data(), to[1].y.data(),
+           to[1].z.data());
     return to;
   };
   const auto twin = run(scalar::metric_normals);

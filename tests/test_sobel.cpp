@@ -60,7 +60,7 @@ struct Vectors {
 TEST_CASE("the Sobel operator is a central difference, smoothed along the other axes",
           "[kernels]") {
   const std::array<float, 3> scale{1.5F, 0.7F, -0.3F};
-  for (const size_t width : {1, 2, 3, 7, 8, 15, 16, 17, 33, 70}) {
+  for (const size_t width : std::initializer_list<size_t>{1, 2, 3, 7, 8, 15, 16, 17, 33, 70}) {
     const Rows rows(width, static_cast<uint32_t>(width));
     std::vector<float> scratch(kernels::sobel_scratch(width));
     Vectors twin(width);
@@ -112,7 +112,7 @@ TEST_CASE("the Sobel gradient of a linear ramp is its slope, half of it at a row
 
 TEST_CASE("vectors longer than the bound keep their direction and get length one", "[kernels]") {
   const float bound = 2.5F;
-  for (const size_t count : {0, 1, 5, 16, 53}) {
+  for (const size_t count : std::initializer_list<size_t>{0, 1, 5, 16, 53}) {
     std::vector<float> g[3];
     for (uint32_t a = 0; a < 3; ++a) g[a] = random_floats(count, -3, 3, 20 + a);
     if (count > 4) {
@@ -145,7 +145,7 @@ TEST_CASE("vectors longer than the bound keep their direction and get length one
 }
 
 TEST_CASE("norms are the lengths of the vectors times the factor", "[kernels]") {
-  for (const size_t count : {0, 1, 7, 16, 37}) {
+  for (const size_t count : std::initializer_list<size_t>{0, 1, 7, 16, 37}) {
     std::vector<float> g[3];
     for (uint32_t a = 0; a < 3; ++a) g[a] = random_floats(count, -3, 3, 30 + a);
     std::vector<float> twin(count + 1, kUntouched);

@@ -12,7 +12,7 @@ namespace scalar = plc::kernels::scalar;
 
 TEST_CASE("weighted rows are summed in order on any part of them", "[kernels]") {
   const size_t width = 53;
-  for (const size_t taps : {1, 2, 7, 25}) {
+  for (const size_t taps : std::initializer_list<size_t>{1, 2, 7, 25}) {
     std::vector<std::vector<float>> values;
     std::vector<const float*> rows;
     rows.reserve(taps);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "tools/command_check.h"
@@ -44,6 +45,41 @@ int on_progress(const plc_progress* progress, void* user) {
   return watch.interrupt.interrupted() ? 1 : 0;
 }
 
+<<<<<<< HEAD
+=======
+TriangleMesh mesh_of(const plc_surface* surface, plc_space space) {
+  TriangleMesh mesh;
+  const auto vertices = static_cast<size_t>(plc_surface_vertex_count(surface));
+  std::vector<float> xyz(3 * vertices);
+  plc_surface_positions(surface, space, xyz.data());
+  mesh.xyz.assign(xyz.begin(), xyz.end());
+  mesh.abc.resize(3 * static_cast<size_t>(plc_surface_face_count(surface)));
+  plc_surface_faces(surface, space, mesh.abc.data());
+  mesh.normals.resize(3 * vertices);
+  plc_surface_normals(surface, space, mesh.normals.data());
+  return mesh;
+}
+
+// The files of --each-level: a callback must not throw through the engine, so it keeps the failure.
+struct LevelFiles {
+  const std::string& output;
+  plc_space space;
+  std::optional<Failure> failure;
+};
+
+plc_verdict on_level(const plc_level_report* level, const plc_surface* surface, void* user) {
+  auto& files = *static_cast<LevelFiles*>(user);
+  try {
+    write_mesh(named(files.output, "level" + std::to_string(level->level)),
+               mesh_of(surface, files.space));
+  } catch (const Failure& failure) {
+    files.failure = failure;
+    return PLC_VERDICT_STOP;
+  }
+  return PLC_VERDICT_ACCEPT;
+}
+
+>>>>>>> experiments
 // NULL where it was cancelled.
 SurfaceHandle evolve(plc_context* context, const plc_image& image, const ExtractJob& job,
                      const ExtractInputs& inputs, const ExtractOptions& options, TraceFile& trace,
@@ -53,11 +89,18 @@ SurfaceHandle evolve(plc_context* context, const plc_image& image, const Extract
   plc_extras extras = inputs.extras();
   extras.progress = on_progress;
   extras.progress_user = &watch;
+  LevelFiles files{job.output, options.space, std::nullopt};
+  if (options.each_level) {
+    extras.level = on_level;
+    extras.level_user = &files;
+  }
   plc_surface* surface = nullptr;
   const plc_status status = plc_extract(context, &image, &job.parameters, &extras, &surface);
   if (status == PLC_CANCELLED) return nullptr;
   if (status != PLC_OK) throw failure_of(context, status);
-  return SurfaceHandle(surface);
+  SurfaceHandle result(surface);
+  if (files.failure) throw *files.failure;
+  return result;
 }
 
 // Before the long run rather than after it.

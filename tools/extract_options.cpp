@@ -131,6 +131,9 @@ class Declarations {
                     "CSV to write: iteration, level, vertices, energy, speed and seconds of every "
                     "iteration (figure 17)")
         ->type_name("FILE");
+    command_.add_flag("--each-level", options_.each_level,
+                      "Write the surface at the end of each level too, OUTPUT-levelH.SUFFIX "
+                      "(figures 14, 16, 20)");
     command_.add_flag("--quiet", options_.quiet, "No progress and no summary; errors only");
   }
 

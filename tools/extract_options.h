@@ -30,6 +30,7 @@ struct ExtractOptions {
   plc_parameters parameters;
   plc_context_options context;
   plc_space space = PLC_SPACE_LPS;
+  bool each_level = false;
   bool quiet = false;
 
   ExtractOptions();  // the engine's defaults

@@ -9,7 +9,7 @@ build=(g++ cmake make libhwy-dev libtbb-dev libmimalloc-dev libinsighttoolkit5-d
 test=(catch2 invesalius-examples)
 demo=(invesalius-examples)
 lint=(clang-format clang-tidy)
-perf=(jq)
+perf=(jq gnuplot-nox invesalius-examples)
 
 wanted=()
 for purpose in "$@"; do
