@@ -45,21 +45,6 @@ int on_progress(const plc_progress* progress, void* user) {
   return watch.interrupt.interrupted() ? 1 : 0;
 }
 
-<<<<<<< HEAD
-=======
-TriangleMesh mesh_of(const plc_surface* surface, plc_space space) {
-  TriangleMesh mesh;
-  const auto vertices = static_cast<size_t>(plc_surface_vertex_count(surface));
-  std::vector<float> xyz(3 * vertices);
-  plc_surface_positions(surface, space, xyz.data());
-  mesh.xyz.assign(xyz.begin(), xyz.end());
-  mesh.abc.resize(3 * static_cast<size_t>(plc_surface_face_count(surface)));
-  plc_surface_faces(surface, space, mesh.abc.data());
-  mesh.normals.resize(3 * vertices);
-  plc_surface_normals(surface, space, mesh.normals.data());
-  return mesh;
-}
-
 // The files of --each-level: a callback must not throw through the engine, so it keeps the failure.
 struct LevelFiles {
   const std::string& output;
@@ -79,7 +64,6 @@ plc_verdict on_level(const plc_level_report* level, const plc_surface* surface, 
   return PLC_VERDICT_ACCEPT;
 }
 
->>>>>>> experiments
 // NULL where it was cancelled.
 SurfaceHandle evolve(plc_context* context, const plc_image& image, const ExtractJob& job,
                      const ExtractInputs& inputs, const ExtractOptions& options, TraceFile& trace,
