@@ -147,7 +147,7 @@ labels "an image too" "labels" cells.nrrd cells.nrrd
 labels "several surfaces" "labels" cells.nrrd --structure bone=--iso=3
 for option in "--iso 1" "--inside below" "--level-iso 1" "--window 0,1" "--pad 0" \
   "--feature gradient-norm" "--sigma 1" "--levels 1" "--reduction 2" "--init bubble" "--attach f" \
-  "--force both" "--gradient 1" "--gradient-tangent 1" "--gradient-bound 1" "--trace t.csv" \
+  "--force both" "--gradient 1" "--gradient-tangent 1" "--gradient-bound 1" "--trace t.csv" "--each-level" \
   --no-late-bubbles; do
   read -ra words <<<"$option"
   labels "$option" "${words[0]#--}.*labels" cells.nrrd "${words[@]}"
