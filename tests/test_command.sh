@@ -249,6 +249,9 @@ for key in pellicle input dims spacing range parameters levels level unit delta 
   says "report" "\"$key\":" out/r.json
 done
 says "report" '"hash": "[0-9a-f]{16}"' out/r.json
+works "--each-level" 0 "$pellicle" extract ball.nrrd --iso 0.5 --levels 1 --each-level --quiet -o out/l.ply
+for file in out/l-level1.ply out/l-level0.ply; do works "check of $file" 0 "$pellicle" check $file; done
+cmp -s out/l.ply out/l-level0.ply || fails "--each-level: the last level's surface is not the result"
 works "render" 0 "$pellicle" render surface.ply --size 64 -o out/picture.png
 works "measure" 0 "$pellicle" measure tetra.off --curvature --geodesic 0,0,13 --distance surface.ply \
   -o out/m.vtp --json out/m.json
