@@ -178,7 +178,7 @@ MissedPlaces find_missed_places(const Mesh& mesh, const ImageView& image, float 
       }
     }
   }
-  // Only now: a place of two kinds' voxels side by side is judged by all of them.
+  // Only now: the places are judged in scan order, by what all of them were.
   for (const uint32_t i : dropped) places.kind[i] = kNone;
   return places;
 }

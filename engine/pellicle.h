@@ -179,7 +179,8 @@ typedef struct plc_parameters {
   double epsilon;     /* kinetic energy along the normals below which a level has converged, > 0 */
   double calm_speed;  /* also no vertex may be as fast, in delta per time; 0: not asked */
   int max_iterations; /* per level, >= 1; I_0 may take as many again after late bubbles */
-  int late_bubbles;   /* 1: bubbles start in what a level's surface has missed; 0: as the paper */
+  int late_bubbles;   /* 1: bubbles start in what a level's surface has missed; 0: as the paper.
+                         None with PLC_FORCE_GRADIENT: nothing would hold them to iso */
 } plc_parameters;
 
 PLC_API void plc_parameters_defaults(plc_parameters* parameters);

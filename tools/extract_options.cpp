@@ -240,7 +240,7 @@ class Declarations {
     command_.add_flag_callback(
         "--no-late-bubbles", [&p = p_] { p.late_bubbles = 0; },
         "Start no bubbles in parts and cavities that a level's surface has missed (the paper's "
-        "behaviour)");
+        "behaviour); with --force gradient alone there are none");
   }
 
   void machine() {
