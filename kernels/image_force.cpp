@@ -4,8 +4,8 @@
 #define HWY_TARGET_INCLUDE "kernels/image_force.cpp"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "kernels/cells-inl.h"
 #include "kernels/dispatch.h"
+#include "kernels/sample-inl.h"
 #include "kernels/scalar.h"
 #include "kernels/vectors-inl.h"
 
@@ -17,31 +17,6 @@ namespace HWY_NAMESPACE {
 using scalar::iso_force;
 using scalar::sample_trilinear;
 #else
-
-// The four voxels of a cell in one plane: two 8-byte loads, which cost less than gathers.
-struct CellQuads {
-  const float* plane;
-  int32_t row;
-  const uint32_t* offset;  // of each lane's cell
-  HWY_INLINE Quad operator()(uint32_t lane) const {
-    const hn::Half<QuadTag> pair;
-    const float* cell = plane + offset[lane];
-    return hn::Combine(QuadTag(), hn::LoadU(pair, cell + row), hn::LoadU(pair, cell));
-  }
-};
-
-// Bilinear in the plane of voxels: x, then y.
-HWY_INLINE Floats sample_plane(const CellQuads& cells, Floats x, Floats y) {
-  const Floats4 quad = load_transposed(cells);
-  return lerp(lerp(quad.x, quad.y, x), lerp(quad.z, quad.w, x), y);
-}
-
-HWY_INLINE Floats sample(const ImageView& image, const Floats3& p) {
-  const Place at = locate(image, p);
-  const Floats below = sample_plane({image.data, at.row, at.cell}, at.x, at.y);
-  const Floats above = sample_plane({image.data + at.plane, at.row, at.cell}, at.x, at.y);
-  return lerp(below, above, at.z);
-}
 
 void sample_trilinear(const ImageView& image, const Packed* position, uint32_t begin, uint32_t end,
                       float* values) {
