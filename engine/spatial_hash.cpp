@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "engine/blocks.h"
 #include "engine/constants.h"
@@ -13,6 +14,9 @@ namespace {
 // Buckets are sorted in this many parts, each by itself.
 constexpr uint32_t kParts = 16;
 constexpr size_t kBlock = 4096;  // vertices per task
+
+// One record at a time: GCC and clang make what they have of it.
+using Four = float __attribute__((vector_size(16)));
 
 }  // namespace
 
@@ -84,6 +88,35 @@ void SpatialHash::insert(uint32_t v, Vec3 p) {
   const uint32_t list = bucket(p) >> kLateShift;
   late_.push_back({v, late_head_[list]});
   late_head_[list] = static_cast<uint32_t>(late_.size() - 1);
+}
+
+void SpatialHash::collect(const Mesh& mesh, Vec3 low, Vec3 high, Buffer<uint32_t>& ids) const {
+  size_t count = ids.size();
+  const Four from{low.x, low.y, low.z, 0}, to{high.x, high.y, high.z, 0};
+  // Without branches: whether a vertex lies within is as good as random.
+  const auto look = [&](uint32_t v) {
+    Four at;
+    std::memcpy(&at, &mesh.packed[v], sizeof at);
+    const auto out = (at < from) | (at > to);
+    uint64_t halves[2];
+    std::memcpy(halves, &out, sizeof halves);
+    ids[count] = v;
+    count += static_cast<size_t>((halves[0] | halves[1]) == 0);
+  };
+  visit_rows(low, high, [&](uint32_t first, uint32_t run) {
+    visit_runs(first, run, [&](uint32_t b, uint32_t last) {
+      ids.resize_uninitialized(count + (start_[last + 1] - start_[b]));
+      for (uint32_t i = start_[b]; i < start_[last + 1]; ++i) look(entries_[i]);
+      if (late_.empty()) return;
+      for (uint32_t l = b >> kLateShift; l <= last >> kLateShift; ++l) {
+        for (uint32_t i = late_head_[l]; i != kEnd; i = late_[i].next) {
+          ids.resize_uninitialized(count + 1);
+          look(late_[i].id);
+        }
+      }
+    });
+  });
+  ids.resize_uninitialized(count);
 }
 
 }  // namespace plc

@@ -14,7 +14,7 @@ namespace {
 constexpr size_t kTaskVertices = 256;
 // A group ends where its box would grow beyond this, in delta: what is around it is fetched once
 // but searched by each of its vertices.
-constexpr float kGroupExtent = 4;
+constexpr float kGroupExtent = 6;
 constexpr size_t kGroupVertices = 32;
 
 }  // namespace
@@ -23,7 +23,7 @@ constexpr size_t kGroupVertices = 32;
 struct Surroundings::Task {
   std::vector<VertexPair> too_near;
   std::vector<uint32_t> at_risk;
-  std::vector<uint32_t> ids;      // around the group
+  Buffer<uint32_t> ids;           // around the group
   std::vector<float> streams[6];  // their places and normals
   std::vector<uint32_t> hits;
 };
@@ -38,8 +38,7 @@ void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& h
       const Vec3 span{reach, reach, reach};
       Task& task = tasks[index];
       task.ids.clear();
-      hash.visit_box(mesh_, low - span, high + span,
-                     [&](uint32_t w, Vec3) { task.ids.push_back(w); });
+      hash.collect(mesh_, low - span, high + span, task.ids);
       search_group(due.data() + i, count, task);
       i += count;
     }
@@ -103,7 +102,7 @@ void Surroundings::judge(uint32_t v, uint32_t hits, Task& task) const {
   for (uint32_t k = 0; k < hits; ++k) {
     const uint32_t i = task.hits[k];
     const uint32_t w = task.ids[i];
-    if (w == v || ring.contains(w)) continue;
+    if (w == v || ring.contains(w) || !mesh_.alive(w)) continue;
     if (squared_distance(p, mesh_.at(w)) < near * near) {
       task.too_near.push_back({std::min(v, w), std::max(v, w)});
     }
