@@ -31,9 +31,17 @@ class SpatialHash {
   // Vertices that insert() has been called for since build().
   size_t inserted() const { return late_.size(); }
 
-  // Appends the vertices within the box [low, high], some perhaps twice, and perhaps some that have
-  // been deleted; always in the same order.
-  void collect(const Mesh& mesh, Vec3 low, Vec3 high, Buffer<uint32_t>& ids) const;
+  // The vertices within the box [low, high], some perhaps twice, and perhaps some that have been
+  // deleted; always in the same order. The other buffers are scratch memory.
+  struct Run {
+    uint32_t first, last;
+  };
+  struct Collected {
+    Buffer<uint32_t> ids;
+    Buffer<uint32_t> found;
+    Buffer<Run> runs;
+  };
+  void collect(const Mesh& mesh, Vec3 low, Vec3 high, Collected& out) const;
   // visit(id, position) for each living vertex within the box [low, high], perhaps twice; always in
   // the same order.
   template <typename Visit>
