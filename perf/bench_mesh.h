@@ -11,6 +11,7 @@
 #include "engine/initial_surface.h"
 #include "engine/refinement.h"
 #include "kernels/simd.h"
+#include "pyramid/buffer.h"
 
 namespace bench {
 
@@ -21,7 +22,7 @@ struct Image {
   static constexpr int32_t kBalls[3] = {5, 5, 2};
   static constexpr float kRadius = 16;
   static constexpr float kIso = 0.5F;
-  std::vector<float> values;
+  plc::Buffer<float> values;
 
   Image() {
     values.reserve(size_t{268} * 268 * 120);
@@ -38,9 +39,7 @@ struct Image {
     return v;
   }
   // Between the places of the balls on axis a.
-  static float pitch(int a) {
-    return static_cast<float>(kDims[a]) / static_cast<float>(kBalls[a]);
-  }
+  static float pitch(int a) { return static_cast<float>(kDims[a]) / static_cast<float>(kBalls[a]); }
 
  private:
   static float potential(int32_t x, int32_t y, int32_t z) {
@@ -76,8 +75,7 @@ inline plc::Mesh evolved_mesh(const Image& image, double shrink = 1) {
     float centre[3];
     for (int a = 0; a < 3; ++a) centre[a] = (static_cast<float>(at[a]) + 0.5F) * Image::pitch(a);
     constexpr float kStart = 1.35F * Image::kRadius;
-    plc::append_bubble(mesh, {centre[0], centre[1], centre[2]}, {kStart, kStart, kStart},
-                       schedule);
+    plc::append_bubble(mesh, {centre[0], centre[1], centre[2]}, {kStart, kStart, kStart}, schedule);
   }
   plc::Evolution evolution(mesh, schedule, plc::best_simd_target(), plc::Model());
   plc::Seconds seconds;
