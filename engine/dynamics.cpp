@@ -125,8 +125,10 @@ std::vector<Pass> Dynamics::passes(const Guide& guide, Seconds& seconds) {
   std::vector<Pass> table;
   table.push_back({"normals", kRings | kPositions, kNormals | kLaplacians, &seconds.normals,
                    [this, guide] { normals(guide); }});
-  table.push_back({"rest length", kRings | kPositions, kRestLength, &seconds.dynamics,
-                   [this, guide] { measure_rest_length(guide); }});
+  if (model_.spring > 0) {
+    table.push_back({"rest length", kRings | kPositions, kRestLength, &seconds.dynamics,
+                     [this, guide] { measure_rest_length(guide); }});
+  }
   for (int stage = 0; stage < 4; ++stage) add_stage(stage, guide, seconds, table);
   if (moves_at_once(guide)) return table;
   table.push_back({"bound", kRings | kPositions | kNormals | kRestLength,
@@ -300,7 +302,7 @@ kernels::MoveBound Dynamics::move_bound() const {
 
 void Dynamics::measure_rest_length(const Guide& guide) {
   rest_length_ = 0;
-  if (model_.spring <= 0 || model_.rest_length == RestLength::kZero) return;
+  if (model_.rest_length == RestLength::kZero) return;
   if (model_.rest_length == RestLength::kValue) {
     rest_length_ = model_.rest_length_value * static_cast<float>(mesh_.delta);
     return;
