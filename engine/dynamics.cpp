@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "engine/blocks.h"
 #include "engine/constants.h"
 #include "kernels/gradient_force.h"
 #include "kernels/image_force.h"
@@ -12,8 +14,28 @@ namespace plc {
 
 namespace {
 
+constexpr size_t kTaskBlocks = kGrain / kRingLanes;
+
 bool stretched(const Metric& m) {
   return m.x != 1 || m.y != 1 || m.z != 1;
+}
+
+kernels::Float3s raw(Streams3& s) {
+  return {s.x.data(), s.y.data(), s.z.data()};
+}
+kernels::ConstFloat3s raw(const Streams3& s) {
+  return {s.x.data(), s.y.data(), s.z.data()};
+}
+
+// body(begin, end) for every run of successive blocks.
+template <typename Body>
+void split_runs(const Blocks& blocks, const Body& body) {
+  for (size_t i = 0; i < blocks.count;) {
+    const uint32_t begin = blocks.begin(i);
+    uint32_t end = begin;
+    for (; i < blocks.count && blocks.begin(i) == end; ++i) end += kRingLanes;
+    body(begin, end);
+  }
 }
 
 }  // namespace
@@ -37,82 +59,105 @@ Dynamics::Dynamics(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const 
       model_(model),
       time_step_(stable_time_step(model)) {}
 
-void Dynamics::resize() {
+void Dynamics::resize(const Guide& guide) {
   const size_t n = mesh_.padded();
-  for (Streams3* s : {&force_, &speed_, &rate_}) s->resize(n);
-  for (Buffer<Packed>* b : {&stage_[0], &stage_[1], &laplacian_, &before_}) b->resize(n);
+  for (Streams3* s : {&speed_, &rate_}) s->resize(n);
+  laplacian_.resize(n);
+  // As many as the mesh has room for: they are swapped.
+  for (Buffer<Packed>& b : stage_) b.resize(mesh_.packed.size());
+  if (!only_surface_forces(guide)) force_.resize(n);
+  if (!stretched(guide.metric)) return;
+  for (Streams3* s : {&metric_normal_, &metric_step_}) s->resize(n);
 }
 
-void Dynamics::blocks(const std::function<void(uint32_t, uint32_t)>& body) const {
-  const size_t per = kGrain / kRingLanes;
-  const size_t tasks = (awake_.size() + per - 1) / per;
-  const auto block = [&](size_t i) {
-    const size_t end = std::min((i + 1) * per, awake_.size());
-    for (size_t k = i * per; k < end;) {
-      const uint32_t first = awake_[k];
-      uint32_t last = first;
-      for (++k; k < end && awake_[k] == last + 1; ++k) ++last;
-      body(first * kRingLanes, (last + 1) * kRingLanes);
-    }
-  };
-  if (awake_.size() * kRingLanes < kSerialBelow) {
-    for (size_t i = 0; i < tasks; ++i) block(i);
+// Neighbours read the positions and Laplacians of blocks that sleep: they are the same in the mesh
+// and both stages, and those of when it fell asleep.
+void Dynamics::choose_blocks(const Sleep* sleep) {
+  if (sleep == nullptr) {
+    blocks_.resize(mesh_.padded() / kRingLanes);
+    std::iota(blocks_.begin(), blocks_.end(), 0U);
   } else {
-    schedule_.run(tasks, block);
+    blocks_ = sleep->awake();
+    const Blocks fallen{sleep->fallen().data(), sleep->fallen().size()};
+    split_runs(fallen, [&](uint32_t begin, uint32_t end) {
+      for (Buffer<Packed>& stage : stage_) {
+        std::copy(mesh_.packed.begin() + begin, mesh_.packed.begin() + end, stage.begin() + begin);
+      }
+    });
+    kernels::laplacian(simd_, mesh_.rings(), mesh_.packed.data(), fallen, laplacian_.data());
+  }
+  movement_.assign(tasks(), {});
+}
+
+size_t Dynamics::tasks() const {
+  return (blocks_.size() + kTaskBlocks - 1) / kTaskBlocks;
+}
+
+Blocks Dynamics::task(size_t index) const {
+  const size_t begin = index * kTaskBlocks;
+  return {blocks_.data() + begin, std::min(kTaskBlocks, blocks_.size() - begin)};
+}
+
+void Dynamics::for_tasks(const std::function<void(size_t, const Blocks&)>& body) const {
+  const auto run = [&](size_t i) { body(i, task(i)); };
+  if (blocks_.size() * kRingLanes < kSerialBelow) {
+    for (size_t i = 0; i < tasks(); ++i) run(i);
+  } else {
+    schedule_.run(tasks(), run);
   }
 }
 
-double Dynamics::block_sum(const std::function<double(uint32_t, uint32_t)>& body) const {
-  std::vector<double> part(mesh_.padded() / kRingLanes, 0.0);
-  blocks([&](uint32_t begin, uint32_t end) { part[begin / kRingLanes] = body(begin, end); });
-  double sum = 0;
-  for (const double p : part) sum += p;
-  return sum;
+void Dynamics::for_runs(const std::function<void(uint32_t, uint32_t)>& body) const {
+  for_tasks([&](size_t, const Blocks& blocks) { split_runs(blocks, body); });
+}
+
+bool Dynamics::only_surface_forces(const Guide& guide) const {
+  return model_.curvature > 0 && model_.attraction != 0 && model_.spring <= 0 &&
+         guide.gradient.data == nullptr &&
+         (guide.user == nullptr || (guide.user->attachments.empty() && !guide.user->force));
+}
+
+bool Dynamics::moves_at_once(const Guide& guide) const {
+  return only_surface_forces(guide) && model_.bound == Bound::kClamp &&
+         (guide.user == nullptr || guide.user->pins.empty());
 }
 
 Status Dynamics::step(const Guide& guide, Seconds& seconds, const Sleep* sleep) {
-  resize();
-  awake_.clear();
-  for (uint32_t b = 0; b < mesh_.padded() / kRingLanes && sleep == nullptr; ++b) awake_.push_back(b);
-  if (sleep != nullptr) awake_ = sleep->awake();
-  for (const uint32_t block : sleep == nullptr ? std::vector<uint32_t>{} : sleep->fallen()) {
-    for (uint32_t v = block * kRingLanes; v < (block + 1) * kRingLanes; ++v) {
-      stage_[0][v] = stage_[1][v] = mesh_.packed[v];
-    }
-    kernels::laplacian(simd_, mesh_.rings(), mesh_.packed.data(), block * kRingLanes,
-                       (block + 1) * kRingLanes, laplacian_.data());
-  }
-  std::copy(mesh_.packed.begin(), mesh_.packed.begin() + mesh_.padded(), before_.begin());
+  resize(guide);
+  choose_blocks(sleep);
   const bool user_force = guide.user != nullptr && guide.user->force;
-  if (stretched(guide.metric)) {
-    for (Streams3* s : {&metric_normal_, &metric_step_}) s->resize(mesh_.padded());
-  }
   time_step_ = stable_time_step(model_, guide.user == nullptr ? 0 : guide.user->stiffness());
   status_ = {};
   // In order, the user's force is called on the calling thread.
-  schedule_.run_passes(passes(guide, seconds), user_force || mesh_.padded() < kSerialBelow);
+  schedule_.run_passes(passes(guide, seconds),
+                       user_force || blocks_.size() * kRingLanes < kSerialBelow);
+  end_step();
   return status_;
 }
 
 std::vector<Pass> Dynamics::passes(const Guide& guide, Seconds& seconds) {
   std::vector<Pass> table;
-  table.push_back({"normals", kRings | kPositions, kNormals, &seconds.normals,
+  table.push_back({"normals", kRings | kPositions, kNormals | kLaplacians, &seconds.normals,
                    [this, guide] { normals(guide); }});
-  table.push_back({"rest length", kRings | kPositions, kRestLength, &seconds.dynamics,
-                   [this, guide] { measure_rest_length(guide); }});
+  if (model_.spring > 0) {
+    table.push_back({"rest length", kRings | kPositions, kRestLength, &seconds.dynamics,
+                     [this, guide] { measure_rest_length(guide); }});
+  }
   for (int stage = 0; stage < 4; ++stage) add_stage(stage, guide, seconds, table);
+  if (moves_at_once(guide)) return table;
   table.push_back({"bound", kRings | kPositions | kNormals | kRestLength,
-                   kDisplacements | kVelocities | kStages | kLaplacians, &seconds.dynamics,
-                   [this, guide] { bound(guide); }});
-  table.push_back({"energy", kDisplacements | kNormals, kEnergy, &seconds.dynamics,
-                   [this] { measure_energy(); }});
-  table.push_back({"move", kDisplacements, kPositions, &seconds.dynamics, [this] { move(); }});
+                   kDisplacements | kStages | kLaplacians, &seconds.dynamics, [this, guide] {
+                     if (model_.bound == Bound::kScale) scale_time_step(guide);
+                     if (guide.user != nullptr && !guide.user->pins.empty()) hold_pinned(guide);
+                   }});
+  table.push_back({"move", kDisplacements | kNormals, kPositions | kVelocities | kEnergy,
+                   &seconds.dynamics, [this] { move(); }});
   return table;
 }
 
 void Dynamics::add_stage(int stage, const Guide& guide, Seconds& seconds,
                          std::vector<Pass>& table) {
-  if (model_.curvature > 0) {
+  if (model_.curvature > 0 && stage > 0) {
     table.push_back({"laplacian", kRings | kPositions | kStages, kLaplacians, &seconds.dynamics,
                      [this, stage] { laplacians(stage); }});
   }
@@ -120,23 +165,36 @@ void Dynamics::add_stage(int stage, const Guide& guide, Seconds& seconds,
     table.push_back({"user force", kRings | kPositions | kNormals | kStages, kUserForce,
                      &seconds.dynamics, [this, stage, guide] { user_force(stage, guide); }});
   }
-  table.push_back(
-      {"forces and stage",
-       kRings | kPositions | kVelocities | kNormals | kRestLength | kLaplacians | kUserForce,
-       kStages | kDisplacements, &seconds.dynamics,
-       [this, stage, guide] { forces_and_stage(stage, guide); }});
+  constexpr uint32_t kRead =
+      kRings | kPositions | kVelocities | kNormals | kRestLength | kLaplacians | kUserForce;
+  if (stage == 3 && moves_at_once(guide)) {
+    table.push_back({"stage and move", kRead,
+                     kStages | kDisplacements | kPositions | kVelocities | kEnergy,
+                     &seconds.dynamics, [this, guide] { last_stage_and_move(guide); }});
+    return;
+  }
+  table.push_back({"stage", kRead, kStages | kDisplacements, &seconds.dynamics,
+                   [this, stage, guide] { run_stage(stage, guide); }});
 }
 
+// With the Laplacians of the first stage, which walk the same rings.
 void Dynamics::normals(const Guide& guide) {
-  blocks([&](uint32_t begin, uint32_t end) {
-    Streams3& n = mesh_.normal;
-    kernels::normals(simd_, mesh_.rings(), mesh_.packed.data(), begin, end, n.x.data(), n.y.data(),
-                     n.z.data());
+  const kernels::Float3s n = raw(mesh_.normal);
+  const Packed* position = mesh_.packed.data();
+  for_tasks([&](size_t, const Blocks& blocks) {
+    if (model_.curvature > 0) {
+      kernels::normals_and_laplacian(simd_, mesh_.rings(), position, blocks, n.x, n.y, n.z,
+                                     laplacian_.data());
+    } else {
+      kernels::normals(simd_, mesh_.rings(), position, blocks, n.x, n.y, n.z);
+    }
     if (!stretched(guide.metric)) return;
-    Streams3& m = metric_normal_;
-    Streams3& s = metric_step_;
-    kernels::metric_normals(simd_, guide.metric, n.x.data(), n.y.data(), n.z.data(), begin, end,
-                            m.x.data(), m.y.data(), m.z.data(), s.x.data(), s.y.data(), s.z.data());
+    const kernels::Float3s m = raw(metric_normal_);
+    const kernels::Float3s step = raw(metric_step_);
+    split_runs(blocks, [&](uint32_t begin, uint32_t end) {
+      kernels::metric_normals(simd_, guide.metric, n.x, n.y, n.z, begin, end, m.x, m.y, m.z, step.x,
+                              step.y, step.z);
+    });
   });
 }
 
@@ -149,16 +207,30 @@ void Dynamics::user_force(int stage, const Guide& guide) {
 }
 
 void Dynamics::laplacians(int stage) {
-  blocks([this, stage](uint32_t begin, uint32_t end) {
-    kernels::laplacian(simd_, mesh_.rings(), stage_position(stage), begin, end, laplacian_.data());
+  for_tasks([this, stage](size_t, const Blocks& blocks) {
+    kernels::laplacian(simd_, mesh_.rings(), stage_position(stage), blocks, laplacian_.data());
   });
 }
 
-void Dynamics::forces_and_stage(int stage, const Guide& guide) {
-  blocks([&](uint32_t begin, uint32_t end) {
-    stage_forces(stage, guide, begin, end);
-    kernels::rk4_stage(simd_, stage, {1.0F / model_.mass, model_.damping, time_step_},
-                       streams(stage), begin, end);
+void Dynamics::run_stage(int stage, const Guide& guide) {
+  const bool fused = only_surface_forces(guide);
+  for_tasks([&](size_t, const Blocks& blocks) {
+    if (fused) {
+      kernels::guided_stage(simd_, stage, coefficients(), surface_forces(stage, guide),
+                            streams(stage), blocks);
+      return;
+    }
+    split_runs(blocks,
+               [&](uint32_t begin, uint32_t end) { gather_forces(stage, guide, begin, end); });
+    kernels::rk4_stage(simd_, stage, coefficients(), streams(stage), raw(std::as_const(force_)),
+                       blocks);
+  });
+}
+
+void Dynamics::last_stage_and_move(const Guide& guide) {
+  for_tasks([&](size_t index, const Blocks& blocks) {
+    movement_[index] = kernels::guided_move(simd_, coefficients(), surface_forces(3, guide),
+                                            streams(3), move_bound(), move_streams(), blocks);
   });
 }
 
@@ -167,10 +239,8 @@ const Packed* Dynamics::stage_position(int stage) const {
   return stage == 0 ? mesh_.packed.data() : stage_[stage % 2].data();
 }
 
-void Dynamics::stage_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end) {
-  float* fx = force_.x.data();
-  float* fy = force_.y.data();
-  float* fz = force_.z.data();
+void Dynamics::gather_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end) {
+  const auto& [fx, fy, fz] = raw(force_);
   if (model_.curvature > 0) {
     kernels::curvature_force(simd_, mesh_.rings(), laplacian_.data(), model_.curvature, begin, end,
                              fx, fy, fz);
@@ -191,62 +261,74 @@ void Dynamics::stage_forces(int stage, const Guide& guide, uint32_t begin, uint3
 
 // (7) and (8), both normalised by delta (3.8).
 void Dynamics::image_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end) {
-  float* fx = force_.x.data();
-  float* fy = force_.y.data();
-  float* fz = force_.z.data();
-  const bool metric = stretched(guide.metric);
+  const auto& [fx, fy, fz] = raw(force_);
   const auto delta = static_cast<float>(mesh_.delta);
   if (model_.attraction != 0) {
-    const Streams3& n = metric ? metric_step_ : mesh_.normal;
-    kernels::iso_force(simd_, guide.image, stage_position(stage), n.x.data(), n.y.data(),
-                       n.z.data(), delta * model_.attraction, guide.iso, begin, end, fx, fy, fz);
+    const auto& [nx, ny, nz] = raw(image_normal(guide));
+    kernels::iso_force(simd_, guide.image, stage_position(stage), nx, ny, nz,
+                       delta * model_.attraction, guide.iso, begin, end, fx, fy, fz);
   }
   if (guide.gradient.data != nullptr) {
-    const Streams3& n = metric ? metric_normal_ : mesh_.normal;
+    const auto& [nx, ny, nz] =
+        raw(std::as_const(stretched(guide.metric) ? metric_normal_ : mesh_.normal));
     const Metric& m = guide.metric;
-    kernels::gradient_force(simd_, guide.gradient, stage_position(stage), n.x.data(), n.y.data(),
-                            n.z.data(), delta * model_.gradient_normal,
-                            delta * model_.gradient_tangent, {1 / m.x, 1 / m.y, 1 / m.z}, begin,
-                            end, fx, fy, fz);
+    kernels::gradient_force(simd_, guide.gradient, stage_position(stage), nx, ny, nz,
+                            delta * model_.gradient_normal, delta * model_.gradient_tangent,
+                            {1 / m.x, 1 / m.y, 1 / m.z}, begin, end, fx, fy, fz);
   }
 }
 
+const Streams3& Dynamics::image_normal(const Guide& guide) const {
+  return stretched(guide.metric) ? metric_step_ : mesh_.normal;
+}
+
+kernels::Rk4Coefficients Dynamics::coefficients() const {
+  return {1.0F / model_.mass, model_.damping, time_step_};
+}
+
 kernels::Rk4Streams Dynamics::streams(int stage) {
-  const auto& p = mesh_.position;
-  const auto& v = mesh_.velocity;
-  auto& d = mesh_.displacement;
-  return {p.x.data(),
-          p.y.data(),
-          p.z.data(),
-          v.x.data(),
-          v.y.data(),
-          v.z.data(),
-          force_.x.data(),
-          force_.y.data(),
-          force_.z.data(),
-          speed_.x.data(),
-          speed_.y.data(),
-          speed_.z.data(),
-          d.x.data(),
-          d.y.data(),
-          d.z.data(),
-          rate_.x.data(),
-          rate_.y.data(),
-          rate_.z.data(),
-          stage_[(stage + 1) % 2].data()};
+  return {mesh_.packed.data(), raw(std::as_const(mesh_.velocity)),
+          raw(speed_),         raw(mesh_.displacement),
+          raw(rate_),          stage_[(stage + 1) % 2].data()};
+}
+
+kernels::SurfaceForces Dynamics::surface_forces(int stage, const Guide& guide) const {
+  return {mesh_.rings(),
+          laplacian_.data(),
+          model_.curvature,
+          guide.image,
+          stage_position(stage),
+          raw(image_normal(guide)),
+          static_cast<float>(mesh_.delta) * model_.attraction,
+          guide.iso};
+}
+
+// The last stage reads its positions from the other buffer.
+kernels::MoveStreams Dynamics::move_streams() {
+  return {mesh_.packed.data(), stage_[0].data(), raw(mesh_.velocity),
+          raw(std::as_const(mesh_.normal)), mesh_.path.data()};
+}
+
+kernels::MoveBound Dynamics::move_bound() const {
+  const float longest = model_.max_move * static_cast<float>(mesh_.delta);
+  return {longest, longest / time_step_};
 }
 
 void Dynamics::measure_rest_length(const Guide& guide) {
   rest_length_ = 0;
-  if (model_.spring <= 0 || model_.rest_length == RestLength::kZero) return;
+  if (model_.rest_length == RestLength::kZero) return;
   if (model_.rest_length == RestLength::kValue) {
     rest_length_ = model_.rest_length_value * static_cast<float>(mesh_.delta);
     return;
   }
-  const double sum = block_sum([&](uint32_t begin, uint32_t end) {
-    return kernels::edge_length_sum(simd_, mesh_.rings(), mesh_.packed.data(), guide.metric, begin,
-                                    end);
+  // Of the whole mesh, whatever sleeps.
+  std::vector<double> part(block_count(mesh_.padded(), kGrain));
+  run_blocks(schedule_, mesh_.padded(), kGrain, [&](size_t index, size_t begin, size_t end) {
+    part[index] =
+        kernels::edge_length_sum(simd_, mesh_.rings(), mesh_.packed.data(), guide.metric,
+                                 static_cast<uint32_t>(begin), static_cast<uint32_t>(end));
   });
+  const double sum = std::accumulate(part.begin(), part.end(), 0.0);
   // Twice the edges of a closed mesh: the sum of the valences.
   uint64_t ends = 0;
   for (uint32_t v = 0; v < mesh_.slots(); ++v) ends += mesh_.valence(v);
@@ -254,81 +336,61 @@ void Dynamics::measure_rest_length(const Guide& guide) {
 }
 
 // The longest displacement of this step.
-float Dynamics::fastest() const {
-  const auto& d = mesh_.displacement;
-  std::vector<float> part(mesh_.padded() / kRingLanes, 0.0F);
-  blocks([&](uint32_t begin, uint32_t end) {
-    part[begin / kRingLanes] =
-        kernels::max_squared(simd_, d.x.data(), d.y.data(), d.z.data(), begin, end);
+float Dynamics::longest_move() const {
+  std::vector<float> part(tasks(), 0.0F);
+  for_tasks([&](size_t index, const Blocks& blocks) {
+    part[index] = kernels::max_squared(simd_, raw(std::as_const(mesh_.displacement)), blocks);
   });
   return part.empty() ? 0.0F : std::sqrt(*std::max_element(part.begin(), part.end()));
 }
 
 // Second method of 3.6: the displacement is about linear in the time step, so again with a shorter
 // one until the fastest vertex is within the bound; what is left is clamped.
-void Dynamics::scale_time_step(const Guide& guide, float longest) {
+void Dynamics::scale_time_step(const Guide& guide) {
   constexpr int kTries = 8;
+  const float longest = move_bound().length;
   for (int i = 0; i < kTries; ++i) {
-    const float moved = fastest();
+    const float moved = longest_move();
     if (moved <= longest) return;
     time_step_ = time_step_ * (longest / moved) * 0.95F;
     for (int stage = 0; stage < 4; ++stage) {
       if (model_.curvature > 0) laplacians(stage);
       if (guide.user != nullptr && guide.user->force) user_force(stage, guide);
-      forces_and_stage(stage, guide);
+      run_stage(stage, guide);
     }
   }
 }
 
-// Afterwards the velocity of the mesh is the new one.
-void Dynamics::bound(const Guide& guide) {
-  auto& d = mesh_.displacement;
-  const float longest = model_.max_move * static_cast<float>(mesh_.delta);
-  if (model_.bound == Bound::kScale) scale_time_step(guide, longest);
-  blocks([&](uint32_t begin, uint32_t end) {
-    auto& v = rate_;
-    kernels::clamp_movement(simd_, longest, longest / time_step_, d.x.data(), d.y.data(),
-                            d.z.data(), v.x.data(), v.y.data(), v.z.data(), begin, end);
-    const auto carry = [&](const Buffer<float>& from, Buffer<float>& to) {
-      std::copy(from.begin() + begin, from.begin() + end, to.begin() + begin);
-    };
-    carry(v.x, mesh_.velocity.x);
-    carry(v.y, mesh_.velocity.y);
-    carry(v.z, mesh_.velocity.z);
-  });
-  if (guide.user != nullptr && !guide.user->pins.empty()) hold_pinned(guide);
-}
-
 void Dynamics::hold_pinned(const Guide& guide) {
-  blocks([&](uint32_t begin, uint32_t end) {
+  for_runs([&](uint32_t begin, uint32_t end) {
     for (uint32_t v = begin; v < end; ++v) {
       if (!pinned(*guide.user, mesh_.at(v))) continue;
       mesh_.displacement.set(v, {});
-      mesh_.velocity.set(v, {});
+      rate_.set(v, {});
     }
   });
 }
 
 void Dynamics::move() {
-  const auto& d = mesh_.displacement;
-  blocks([&](uint32_t begin, uint32_t end) {
-    kernels::move(simd_, d.x.data(), d.y.data(), d.z.data(), mesh_.position.x.data(),
-                  mesh_.position.y.data(), mesh_.position.z.data(), mesh_.packed.data(),
-                  mesh_.path.data(), begin, end);
+  for_tasks([&](size_t index, const Blocks& blocks) {
+    movement_[index] = kernels::move(simd_, move_bound(), raw(mesh_.displacement),
+                                     raw(std::as_const(rate_)), move_streams(), blocks);
   });
 }
 
-void Dynamics::measure_energy() {
-  const auto& d = mesh_.displacement;
-  const auto& n = mesh_.normal;
-  const double sum = block_sum([&](uint32_t begin, uint32_t end) {
-    return kernels::normal_energy_sum(simd_, d.x.data(), d.y.data(), d.z.data(), n.x.data(),
-                                      n.y.data(), n.z.data(), begin, end);
-  });
+// The positions are what was moved to, and the energy what was measured on the way.
+void Dynamics::end_step() {
+  mesh_.packed.swap(stage_[0]);
+  double sum = 0;
+  float longest2 = 0;
+  for (const kernels::Movement& m : movement_) {
+    sum += m.energy;
+    longest2 = std::max(longest2, m.longest2);
+  }
   const double scale = mesh_.delta * static_cast<double>(time_step_);
   const double count = std::max(1.0, static_cast<double>(mesh_.vertex_count()));
   energy_ = static_cast<double>(model_.mass) * sum / (2 * count * scale * scale);
-  speed_of_fastest_ = static_cast<double>(fastest()) / scale;
+  speed_of_fastest_ = static_cast<double>(std::sqrt(longest2)) / scale;
 }
 
 }  // namespace plc

@@ -7,6 +7,8 @@
 #include "engine/schedule.h"
 #include "engine/sleep.h"
 #include "engine/statistics.h"
+#include "kernels/blocks.h"
+#include "kernels/guided_stage.h"
 #include "kernels/integrate.h"
 #include "kernels/simd.h"
 
@@ -38,52 +40,72 @@ float stable_time_step(const Model& model, float stiffness = 0);
 // The movement part of one iteration. Owns the streams that live within a step:
 //
 //   stream     bytes  written by
-//   force      12     forces, per stage
-//   speed      12     rk4: velocity of the stage
-//   rate       12     rk4: sum of accelerations, after stage 3 the new velocity
-//   stage      2x16   rk4: position of the stage, read and written in turn
+//   speed      12     stages: velocity of the stage
+//   rate       12     stages: sum of accelerations; the new velocity where a pass lies between the
+//                     last stage and the move
+//   stage      2x16   stages: position of the stage, read and written in turn; then one is the
+//                     mesh's positions, by swapping, and the other where the vertices were
 //   laplacian  16     laplacian, per stage
+//   force      12     forces, per stage; only with other forces than curvature and image
 //   along      24     normals: unit normals of the metric and their steps; only with a metric
 //   user       12     user force, per stage; only where there is one
-//   before     16     move: where the vertex was, for taking the movement back
+//
+// 72 bytes per vertex in a run of curvature and image, and 4 per block of 16.
 class Dynamics {
  public:
   Dynamics(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model);
 
-  // Moves every vertex once; displacement, velocity, normal and path of the mesh are written. Fails
-  // where the user's force does; the surface is then where it was, or somewhere on the way.
+  // Moves every vertex that does not sleep once (no sleep: all); displacement, velocity, normal and
+  // path of the mesh are written. Fails where the user's force does; the surface is then where it
+  // was, or somewhere on the way.
   Status step(const Guide& guide, Seconds& seconds, const Sleep* sleep = nullptr);
   // Mean of m (dx . n / (delta dt))^2 / 2 over the vertices, of the last step.
   double energy() const { return energy_; }
   // The longest movement of the last step, in delta per time.
   double speed() const { return speed_of_fastest_; }
   // Positions before the last step.
-  const Buffer<Packed>& before() const { return before_; }
+  const Buffer<Packed>& before() const { return stage_[0]; }
 
  private:
-  std::vector<uint32_t> awake_;
-  void resize();
+  void resize(const Guide& guide);
+  void choose_blocks(const Sleep* sleep);
   std::vector<Pass> passes(const Guide& guide, Seconds& seconds);
   void add_stage(int stage, const Guide& guide, Seconds& seconds, std::vector<Pass>& table);
-  void stage_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end);
   void normals(const Guide& guide);
-  void image_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end);
   void laplacians(int stage);
   void user_force(int stage, const Guide& guide);
-  void forces_and_stage(int stage, const Guide& guide);
-  float fastest() const;
-  void scale_time_step(const Guide& guide, float longest);
   void measure_rest_length(const Guide& guide);
-  void bound(const Guide& guide);
+  // A stage: the forces, and the update under them.
+  void run_stage(int stage, const Guide& guide);
+  void gather_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end);
+  void image_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end);
+  // From the last stage to the end of the step: where nothing lies between them in one pass.
+  void last_stage_and_move(const Guide& guide);
+  void scale_time_step(const Guide& guide);
   void hold_pinned(const Guide& guide);
   void move();
-  void measure_energy();
+  void end_step();
+  float longest_move() const;
+
+  // Whether curvature and image are the only forces, and whether nothing happens between the last
+  // stage and the move.
+  bool only_surface_forces(const Guide& guide) const;
+  bool moves_at_once(const Guide& guide) const;
+  kernels::Rk4Coefficients coefficients() const;
   kernels::Rk4Streams streams(int stage);
+  kernels::SurfaceForces surface_forces(int stage, const Guide& guide) const;
+  kernels::MoveStreams move_streams();
+  kernels::MoveBound move_bound() const;
+  const Streams3& image_normal(const Guide& guide) const;
   const Packed* stage_position(int stage) const;
-  // body(begin, end) over blocks of kGrain.
-  void blocks(const std::function<void(uint32_t, uint32_t)>& body) const;
-  // Sum of body(begin, end) over blocks, in block order.
-  double block_sum(const std::function<double(uint32_t, uint32_t)>& body) const;
+
+  // The blocks that take part in this step, in tasks of kGrain vertices; every pass goes over them.
+  size_t tasks() const;
+  Blocks task(size_t index) const;
+  // body(index of the task, its blocks) for every task.
+  void for_tasks(const std::function<void(size_t, const Blocks&)>& body) const;
+  // body(begin, end) for every run of blocks in every task.
+  void for_runs(const std::function<void(uint32_t, uint32_t)>& body) const;
 
   Mesh& mesh_;
   const Schedule& schedule_;
@@ -94,12 +116,13 @@ class Dynamics {
   double energy_ = 0;
   double speed_of_fastest_ = 0;
   Status status_;
+  std::vector<uint32_t> blocks_;             // ascending
+  std::vector<kernels::Movement> movement_;  // by task
   Streams3 force_, speed_, rate_;
   Streams3 metric_normal_, metric_step_;
   Streams3 user_force_;
   Buffer<Packed> stage_[2];
   Buffer<Packed> laplacian_;
-  Buffer<Packed> before_;
 };
 
 }  // namespace plc

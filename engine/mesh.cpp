@@ -56,7 +56,6 @@ Neighbors Mesh::ring(uint32_t v) const {
 }
 
 void Mesh::place(uint32_t v, Vec3 p) {
-  position.set(v, p);
   packed[v] = {p.x, p.y, p.z, 0};
   calm[v] = 0;
 }
@@ -166,7 +165,6 @@ void Mesh::grow(uint32_t slots) {
   const size_t n = padded();
   if (n <= valence_.size()) return;
   const size_t old = valence_.size();
-  position.resize(n);
   velocity.resize(n);
   normal.resize(n);
   displacement.resize(n);
@@ -236,11 +234,9 @@ void Mesh::renumber(const std::vector<uint32_t>& order) {
     permute(source, order);
     std::swap(target, source);
   };
-  carry3(to.position, position);
   carry3(to.velocity, velocity);
   carry3(to.normal, normal);
   carry3(to.displacement, displacement);
-  to.position.resize(n);
   to.velocity.resize(n);
   to.normal.resize(n);
   to.displacement.resize(n);
@@ -265,9 +261,9 @@ std::vector<uint32_t> Mesh::faces() const {
 uint64_t Mesh::bytes() const {
   const auto of = [](const auto& b) { return b.capacity() * sizeof(b[0]); };
   const auto of3 = [&](const Streams3& s) { return of(s.x) + of(s.y) + of(s.z); };
-  return of3(position) + of3(velocity) + of3(normal) + of3(displacement) + of(packed) + of(path) +
-         of(idle) + of(calm) + of(stir) + of(risk) + of(operations) + of(cut_id) +
-         of(cut_iteration) + of(columns_) + of(valence_) + of(tail_);
+  return of3(velocity) + of3(normal) + of3(displacement) + of(packed) + of(path) + of(idle) +
+         of(calm) + of(stir) + of(risk) + of(operations) + of(cut_id) + of(cut_iteration) +
+         of(columns_) + of(valence_) + of(tail_);
 }
 
 }  // namespace plc

@@ -23,11 +23,11 @@ struct Streams3 {
 // All streams are 64-byte aligned and padded to whole blocks of kRingLanes vertices.
 //
 //   stream         bytes  unit          written by
-//   position       12     mesh units    move, transformations
-//   packed         16     mesh units    the same; what is fetched by neighbour index
-//   velocity       12     per time      rk4 stage 3, transformations
+//   packed         16     mesh units    position: move, transformations; a record, as it is fetched
+//                                       by neighbour index
+//   velocity       12     per time      move, transformations
 //   normal         12     1             normals
-//   displacement   12     mesh units    rk4, bound
+//   displacement   12     mesh units    stages, move
 //   path           4      mesh units    move; reset when the constraints of v are checked
 //   idle           1      iterations    since the constraints of v were checked
 //   calm           1      iterations    sleep.h: for how long v has been calm, up to 255
@@ -47,7 +47,7 @@ class Mesh {
   Mesh(Mesh&&) = default;
   Mesh& operator=(Mesh&&) = default;
 
-  Streams3 position, velocity, normal, displacement;
+  Streams3 velocity, normal, displacement;
   Buffer<Packed> packed;
   Buffer<float> path;
   Buffer<uint8_t> idle;

@@ -46,9 +46,6 @@ std::string broken_invariant(const Mesh& mesh) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
       return at_vertex(v, "its position is not finite");
     }
-    if (p.x != mesh.position.x[v] || p.y != mesh.position.y[v] || p.z != mesh.position.z[v]) {
-      return at_vertex(v, "its packed position differs from its position");
-    }
   }
   if (living != mesh.vertex_count()) return "the count of living vertices is wrong";
   return {};

@@ -1,6 +1,5 @@
 #include "engine/schedule.h"
 
-#include <oneapi/tbb/flow_graph.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -37,6 +36,27 @@ void Schedule::run(size_t tasks, const std::function<void(size_t)>& body) const 
       [&] { oneapi::tbb::parallel_for(size_t{0}, tasks, [&](size_t i) { body(i); }); });
 }
 
+namespace {
+
+bool conflict(const Pass& a, const Pass& b) {
+  return (a.writes & (b.reads | b.writes)) != 0 || (a.reads & b.writes) != 0;
+}
+
+// The passes from `begin` on, in the order of the table, that may run at the same time.
+size_t wave_end(const std::vector<Pass>& passes, size_t begin) {
+  size_t end = begin + 1;
+  for (; end < passes.size(); ++end) {
+    for (size_t i = begin; i < end; ++i) {
+      if (conflict(passes[i], passes[end])) return end;
+    }
+  }
+  return end;
+}
+
+}  // namespace
+
+// The graph of the table by its levels. Its passes are loops over all vertices and nearly a chain:
+// nodes and edges built anew for every step would buy nothing over this.
 void Schedule::run_passes(const std::vector<Pass>& passes, bool small) const {
   const auto timed = [](const Pass& pass) {
     const double start = now();
@@ -47,28 +67,17 @@ void Schedule::run_passes(const std::vector<Pass>& passes, bool small) const {
     for (const Pass& pass : passes) *pass.seconds += timed(pass);
     return;
   }
-  using Node = oneapi::tbb::flow::continue_node<oneapi::tbb::flow::continue_msg>;
   std::vector<double> seconds(passes.size(), 0);
   arena_->tbb.execute([&] {
-    oneapi::tbb::flow::graph graph;
-    std::vector<std::unique_ptr<Node>> nodes;
-    std::vector<bool> has_predecessor(passes.size(), false);
-    for (size_t i = 0; i < passes.size(); ++i) {
-      nodes.push_back(std::make_unique<Node>(graph, [&, i](const oneapi::tbb::flow::continue_msg&) {
-        seconds[i] = timed(passes[i]);
-      }));
-      for (size_t j = 0; j < i; ++j) {
-        const bool conflict = (passes[j].writes & (passes[i].reads | passes[i].writes)) != 0 ||
-                              (passes[j].reads & passes[i].writes) != 0;
-        if (!conflict) continue;
-        oneapi::tbb::flow::make_edge(*nodes[j], *nodes[i]);
-        has_predecessor[i] = true;
+    for (size_t begin = 0, end = 0; begin < passes.size(); begin = end) {
+      end = wave_end(passes, begin);
+      const auto run = [&](size_t i) { seconds[i] = timed(passes[i]); };
+      if (end - begin == 1) {
+        run(begin);
+      } else {
+        oneapi::tbb::parallel_for(begin, end, run, oneapi::tbb::simple_partitioner());
       }
     }
-    for (size_t i = 0; i < passes.size(); ++i) {
-      if (!has_predecessor[i]) nodes[i]->try_put(oneapi::tbb::flow::continue_msg());
-    }
-    graph.wait_for_all();
   });
   for (size_t i = 0; i < passes.size(); ++i) *passes[i].seconds += seconds[i];
 }

@@ -2,21 +2,30 @@
 #pragma once
 #include <cstdint>
 
+#include "kernels/blocks.h"
 #include "kernels/ring.h"
 #include "kernels/simd.h"
 
-// Ranges [begin, end): multiples of kRingLanes. Bits do not depend on `simd`.
+// Bits do not depend on `simd`.
 namespace plc::kernels {
+
+// Three streams of one vector quantity.
+struct Float3s {
+  float *x, *y, *z;
+};
+struct ConstFloat3s {
+  const float *x, *y, *z;
+};
 
 // The streams of one RK4 step of m x'' + gamma x' = f.
 struct Rk4Streams {
-  const float *px, *py, *pz;  // position at the start of the step
-  const float *vx, *vy, *vz;  // velocity at the start of the step
-  const float *fx, *fy, *fz;  // force at the current stage
-  float *sx, *sy, *sz;        // velocity of the stage: read by stages 1..3, written by 0..2
-  float *dx, *dy, *dz;        // weighted sum of stage velocities; after stage 3 the displacement
-  float *ax, *ay, *az;        // weighted sum of accelerations; after stage 3 the new velocity
-  Packed* stage;              // position of the next stage, written by stages 0..2, w = 0
+  const Packed* position;  // at the start of the step
+  ConstFloat3s velocity;   // at the start of the step
+  Float3s speed;           // of the stage: read by stages 1..3, written by 0..2
+  Float3s moved;           // weighted sum of stage velocities, written by stages 1..3;
+                           // after stage 3 the displacement
+  Float3s rate;            // weighted sum of accelerations; after stage 3 the new velocity
+  Packed* stage;           // position of the next stage, written by stages 0..2, w = 0
 };
 
 struct Rk4Coefficients {
@@ -28,31 +37,40 @@ struct Rk4Coefficients {
 // Stage 0..3, in this order of operations (each one rounded):
 //   w  = stage 0 ? v : s           the velocity of the stage
 //   a  = (f - gamma w) * (1/m)
-//   stage 0:    d = w;           A = a
-//   stage 1, 2: d = d + (w + w); A = A + (a + a)
+//   stage 0:    A = a
+//   stage 1:    d = v + (w + w);  A = A + (a + a)
+//   stage 2:    d = d + (w + w);  A = A + (a + a)
 //   stage 0, 1: stage position = p + (dt/2) w;  s = v + (dt/2) a
 //   stage 2:    stage position = p + dt w;      s = v + dt a
 //   stage 3:    d = (d + w) * (dt/6);           A = v + (A + a) * (dt/6)
 void rk4_stage(SimdTarget simd, int stage, const Rk4Coefficients& coefficients,
-               const Rk4Streams& streams, uint32_t begin, uint32_t end);
+               const Rk4Streams& streams, const ConstFloat3s& force, const Blocks& blocks);
 
-// The longest squared displacement of the range (0 for none; NaN is passed over).
-float max_squared(SimdTarget simd, const float* dx, const float* dy, const float* dz,
-                  uint32_t begin, uint32_t end);
+// The longest squared displacement of the blocks (0 for none; NaN is passed over).
+float max_squared(SimdTarget simd, const ConstFloat3s& moved, const Blocks& blocks);
 
-// The speed bound of 3.6: |d| > max_length is scaled down to max_length, |velocity| > max_speed
-// down to max_speed (up to rounding); shorter ones keep their bits.
-void clamp_movement(SimdTarget simd, float max_length, float max_speed, float* dx, float* dy,
-                    float* dz, float* vx, float* vy, float* vz, uint32_t begin, uint32_t end);
+// The speed bound of 3.6, where a step ends, and what is measured of it.
+struct MoveStreams {
+  const Packed* position;  // before
+  Packed* moved_to;        // not `position`
+  Float3s velocity;        // written
+  ConstFloat3s normal;     // of the energy
+  float* path;
+};
+struct MoveBound {
+  float length;  // of the displacement
+  float speed;   // of the velocity
+};
+struct Movement {
+  double energy = 0;   // sum of (d . n)^2, in the order of lane_sum.h: the kinetic energy along the
+                       // normals (5.1) up to m / (2 s (delta dt)^2)
+  float longest2 = 0;  // the greatest |d|^2
+};
 
-// p += d, packed = p; path[v] += |d|. Vertices of valence 0 have d = 0 by the kernels before.
-void move(SimdTarget simd, const float* dx, const float* dy, const float* dz, float* px, float* py,
-          float* pz, Packed* packed, float* path, uint32_t begin, uint32_t end);
-
-// Sum over the range of (d . n)^2 in double, in the order of lane_sum.h: the kinetic energy along
-// the normals (5.1) up to m / (2 s (delta dt)^2).
-double normal_energy_sum(SimdTarget simd, const float* dx, const float* dy, const float* dz,
-                         const float* nx, const float* ny, const float* nz, uint32_t begin,
-                         uint32_t end);
+// From the displacement d and the new velocity after stage 3: both are shortened to the bound (up
+// to rounding; what is within it keeps its bits), moved_to = p + d, path += |d|. `moved` becomes
+// the bounded displacement. Vertices of valence 0 have d = 0 by the kernels before.
+Movement move(SimdTarget simd, const MoveBound& bound, const Float3s& moved,
+              const ConstFloat3s& new_velocity, const MoveStreams& streams, const Blocks& blocks);
 
 }  // namespace plc::kernels

@@ -6,6 +6,7 @@
 #include "hwy/highway.h"
 #include "kernels/dispatch.h"
 #include "kernels/lanes-inl.h"
+#include "kernels/ring-inl.h"
 #include "kernels/scalar.h"
 #include "kernels/vectors-inl.h"
 
@@ -20,92 +21,32 @@ using scalar::edge_violations;
 using scalar::laplacian;
 using scalar::metric_normals;
 using scalar::normals;
+using scalar::normals_and_laplacian;
 using scalar::spring_force;
 #else
 
-// Lanes are vertices v .. v + kLanes - 1.
-HWY_INLINE Floats load_valence(const RingView& ring, uint32_t v) {
-  const hn::Rebind<uint16_t, FloatTag> d16;
-  const hn::RebindToSigned<FloatTag> d32;
-  return hn::ConvertTo(FloatTag(), hn::PromoteTo(d32, hn::LoadU(d16, ring.valence + v)));
-}
-
-// Calls sum.add(mask of the lanes that have slot k, record of slot k) for k = 0 .. until no lane
-// has more, or the columns end.
-template <class Sum>
-HWY_INLINE void walk_ring(const RingView& ring, const Packed* record, uint32_t v, Floats valence,
-                          Sum& sum) {
-  const FloatTag d;
-  const uint32_t* column =
-      ring.columns + size_t{v / kRingLanes} * kRingColumns * kRingLanes + v % kRingLanes;
-  Floats slot = hn::Zero(d);
-  for (uint32_t k = 0; k < kRingSlots; ++k, column += kRingLanes) {
-    const FloatMask has_slot = hn::Lt(slot, valence);
-    if (hn::AllFalse(d, has_slot)) return;
-    sum.add(has_slot, load_indexed(record, column));
-    slot = hn::Add(slot, hn::Set(d, 1.0F));
-  }
-}
-
-HWY_INLINE bool has_tails(Floats valence) {
-  const FloatTag d;
-  return !hn::AllFalse(d, hn::Gt(valence, hn::Set(d, static_cast<float>(kRingSlots))));
-}
-
-// Replaces the lanes whose ring goes on in the tail arena by ring_sum(vertex). Such vertices are
-// rare (constraint (1) leaves little room around a vertex): they are summed again from slot 0.
-template <class RingSum>
-HWY_NOINLINE Floats3 with_tails(const RingView& ring, uint32_t v, const Floats3& sum,
-                                const RingSum& ring_sum) {
-  const FloatTag d;
-  alignas(64) float x[kLanes], y[kLanes], z[kLanes];
-  hn::Store(sum.x, d, x);
-  hn::Store(sum.y, d, y);
-  hn::Store(sum.z, d, z);
-  for (uint32_t l = 0; l < kLanes; ++l) {
-    if (ring.valence[v + l] <= kRingSlots) continue;
-    const scalar::Triple whole = ring_sum(v + l);
-    x[l] = whole.x;
-    y[l] = whole.y;
-    z[l] = whole.z;
-  }
-  return {hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
-}
-
-// 1 / valence, 0 for deleted vertices.
-HWY_INLINE Floats inverse_valence(Floats valence) {
-  const FloatTag d;
-  return hn::IfThenElseZero(hn::Gt(valence, hn::Zero(d)), hn::Div(hn::Set(d, 1.0F), valence));
-}
-
-struct DifferenceSum {
-  Floats3 centre;
-  Floats3 sum = zero3();
-  HWY_INLINE void add(FloatMask has_slot, const Floats3& neighbour) {
-    sum = sum + where(has_slot, neighbour - centre);
-  }
-};
-
-void laplacian(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end,
-               Packed* laplacian) {
-  for (uint32_t v = begin; v < end; v += kLanes) {
-    const Floats valence = load_valence(ring, v);
-    DifferenceSum walk{load_packed(position + v)};
-    walk_ring(ring, position, v, valence, walk);
-    if (HWY_UNLIKELY(has_tails(valence))) {
-      walk.sum = with_tails(ring, v, walk.sum,
-                            [&](uint32_t u) { return scalar::difference_sum(ring, position, u); });
+// visit(v) for vertices v .. v + kLanes - 1 of the blocks.
+template <class Visit>
+HWY_INLINE void for_lanes(const RingView& ring, const Packed* position, const Blocks& blocks,
+                          const Visit& visit) {
+  for (size_t b = 0; b < blocks.count; ++b) {
+    if (b + kAhead < blocks.count) {
+      prefetch_ring(ring, blocks.begin(b + kAhead));
+      prefetch_records(position, blocks.begin(b + kAhead));
     }
-    store_packed(walk.sum * inverse_valence(valence), laplacian + v);
+    const uint32_t begin = blocks.begin(b);
+    for (uint32_t v = begin; v < begin + kRingLanes; v += kLanes) visit(v);
   }
 }
 
-struct RecordSum {
-  Floats3 sum = zero3();
-  HWY_INLINE void add(FloatMask has_slot, const Floats3& record) {
-    sum = sum + where(has_slot, record);
-  }
-};
+void laplacian(const RingView& ring, const Packed* position, const Blocks& blocks,
+               Packed* laplacian) {
+  for_lanes(ring, position, blocks, [&](uint32_t v) HWY_ATTR {
+    const Floats valence = load_valence(ring, v);
+    const Floats3 sum = difference_sum(ring, position, v, valence);
+    store_packed(sum * inverse_valence(valence), laplacian + v);
+  });
+}
 
 void curvature_force(const RingView& ring, const Packed* laplacian, float alpha_c, uint32_t begin,
                      uint32_t end, float* fx, float* fy, float* fz) {
@@ -113,15 +54,10 @@ void curvature_force(const RingView& ring, const Packed* laplacian, float alpha_
   const Floats alpha = hn::Set(d, alpha_c);
   for (uint32_t v = begin; v < end; v += kLanes) {
     const Floats valence = load_valence(ring, v);
-    RecordSum walk{};
-    walk_ring(ring, laplacian, v, valence, walk);
-    if (HWY_UNLIKELY(has_tails(valence))) {
-      walk.sum = with_tails(ring, v, walk.sum,
-                            [&](uint32_t u) { return scalar::record_sum(ring, laplacian, u); });
-    }
+    const Floats3 sum = record_sum(ring, laplacian, v, valence);
     const FloatMask alive = hn::Gt(valence, hn::Zero(d));
     const Floats3 own = load_packed(laplacian + v);
-    store3(where(alive, (own - walk.sum * inverse_valence(valence)) * alpha), fx, fy, fz, v);
+    store3(where(alive, (own - sum * inverse_valence(valence)) * alpha), fx, fy, fz, v);
   }
 }
 
@@ -187,23 +123,52 @@ struct NormalSum {
   }
 };
 
-void normals(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end, float* nx,
-             float* ny, float* nz) {
+// Of a sum whose ring was walked.
+HWY_INLINE Floats3 normal_of(const RingView& ring, const Packed* position, uint32_t v,
+                             Floats valence, const NormalSum& walk) {
   const FloatTag d;
-  for (uint32_t v = begin; v < end; v += kLanes) {
+  Floats3 sum = walk.sum + cross(walk.last, walk.first);
+  if (HWY_UNLIKELY(has_tails(valence))) {
+    sum =
+        with_tails(ring, v, sum, [&](uint32_t u) { return scalar::normal_sum(ring, position, u); });
+  }
+  const Floats length = hn::Sqrt(dot(sum, sum));
+  const FloatMask some = hn::Gt(length, hn::Zero(d));
+  return sum * hn::IfThenElseZero(some, hn::Div(hn::Set(d, 1.0F), length));
+}
+
+void normals(const RingView& ring, const Packed* position, const Blocks& blocks, float* nx,
+             float* ny, float* nz) {
+  for_lanes(ring, position, blocks, [&](uint32_t v) HWY_ATTR {
     const Floats valence = load_valence(ring, v);
     NormalSum walk{load_packed(position + v)};
     walk_ring(ring, position, v, valence, walk);
-    walk.sum = walk.sum + cross(walk.last, walk.first);
-    if (HWY_UNLIKELY(has_tails(valence))) {
-      walk.sum = with_tails(ring, v, walk.sum,
-                            [&](uint32_t u) { return scalar::normal_sum(ring, position, u); });
-    }
-    const Floats length = hn::Sqrt(dot(walk.sum, walk.sum));
-    const FloatMask some = hn::Gt(length, hn::Zero(d));
-    const Floats inverse = hn::IfThenElseZero(some, hn::Div(hn::Set(d, 1.0F), length));
-    store3(walk.sum * inverse, nx, ny, nz, v);
+    store3(normal_of(ring, position, v, valence, walk), nx, ny, nz, v);
+  });
+}
+
+struct NormalAndDifferenceSum : NormalSum {
+  Floats3 differences = zero3();
+  HWY_INLINE void add(FloatMask has_slot, const Floats3& neighbour) {
+    differences = differences + (neighbour - centre);  // +0 past the valence
+    NormalSum::add(has_slot, neighbour);
   }
+};
+
+void normals_and_laplacian(const RingView& ring, const Packed* position, const Blocks& blocks,
+                           float* nx, float* ny, float* nz, Packed* laplacian) {
+  for_lanes(ring, position, blocks, [&](uint32_t v) HWY_ATTR {
+    const Floats valence = load_valence(ring, v);
+    NormalAndDifferenceSum walk{{load_packed(position + v)}};
+    walk_ring(ring, position, v, valence, walk);
+    if (HWY_UNLIKELY(has_tails(valence))) {
+      walk.differences = with_tails(ring, v, walk.differences, [&](uint32_t u) {
+        return scalar::difference_sum(ring, position, u);
+      });
+    }
+    store3(normal_of(ring, position, v, valence, walk), nx, ny, nz, v);
+    store_packed(walk.differences * inverse_valence(valence), laplacian + v);
+  });
 }
 
 void metric_normals(const Metric& metric, const float* nx, const float* ny, const float* nz,
@@ -299,13 +264,14 @@ HWY_EXPORT(laplacian);
 HWY_EXPORT(curvature_force);
 HWY_EXPORT(spring_force);
 HWY_EXPORT(normals);
+HWY_EXPORT(normals_and_laplacian);
 HWY_EXPORT(metric_normals);
 HWY_EXPORT(edge_violations);
 HWY_EXPORT(edge_length_sum);
 
-void laplacian(SimdTarget simd, const RingView& ring, const Packed* position, uint32_t begin,
-               uint32_t end, Packed* laplacian) {
-  PLC_DISPATCH(simd, laplacian)(ring, position, begin, end, laplacian);
+void laplacian(SimdTarget simd, const RingView& ring, const Packed* position, const Blocks& blocks,
+               Packed* laplacian) {
+  PLC_DISPATCH(simd, laplacian)(ring, position, blocks, laplacian);
 }
 
 void curvature_force(SimdTarget simd, const RingView& ring, const Packed* laplacian, float alpha_c,
@@ -320,9 +286,15 @@ void spring_force(SimdTarget simd, const RingView& ring, const Packed* position,
   (ring, position, alpha_e, rest_length, metric, begin, end, fx, fy, fz);
 }
 
-void normals(SimdTarget simd, const RingView& ring, const Packed* position, uint32_t begin,
-             uint32_t end, float* nx, float* ny, float* nz) {
-  PLC_DISPATCH(simd, normals)(ring, position, begin, end, nx, ny, nz);
+void normals(SimdTarget simd, const RingView& ring, const Packed* position, const Blocks& blocks,
+             float* nx, float* ny, float* nz) {
+  PLC_DISPATCH(simd, normals)(ring, position, blocks, nx, ny, nz);
+}
+
+void normals_and_laplacian(SimdTarget simd, const RingView& ring, const Packed* position,
+                           const Blocks& blocks, float* nx, float* ny, float* nz,
+                           Packed* laplacian) {
+  PLC_DISPATCH(simd, normals_and_laplacian)(ring, position, blocks, nx, ny, nz, laplacian);
 }
 
 void metric_normals(SimdTarget simd, const Metric& metric, const float* nx, const float* ny,

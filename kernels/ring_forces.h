@@ -2,19 +2,20 @@
 #pragma once
 #include <cstdint>
 
+#include "kernels/blocks.h"
 #include "kernels/ring.h"
 #include "kernels/simd.h"
 
 // Ranges [begin, end): begin and end are multiples of kRingLanes. Output streams are written for
-// every vertex of the range, 0 for deleted vertices and padding. Bits do not depend on `simd`:
-// every vertex sums its ring from slot 0 up, one operation at a time; a mean is that sum times
-// 1/valence.
+// every vertex of the range or of the blocks, 0 for deleted vertices and padding. Bits do not
+// depend on `simd`: every vertex sums its ring from slot 0 up, one operation at a time; a mean is
+// that sum times 1/valence.
 namespace plc::kernels {
 
 // laplacian[v] = mean of the neighbours of v minus v (as the mean of the differences, which keeps
 // digits that a mean of coordinates far from 0 loses), w = 0.
-void laplacian(SimdTarget simd, const RingView& ring, const Packed* position, uint32_t begin,
-               uint32_t end, Packed* laplacian);
+void laplacian(SimdTarget simd, const RingView& ring, const Packed* position, const Blocks& blocks,
+               Packed* laplacian);
 
 // f = alpha_c (L(v) - mean over the ring of L), L from laplacian() over the whole mesh: eq. (5).
 void curvature_force(SimdTarget simd, const RingView& ring, const Packed* laplacian, float alpha_c,
@@ -28,8 +29,14 @@ void spring_force(SimdTarget simd, const RingView& ring, const Packed* position,
 
 // Unit normal, outward: the sum of the cross products of successive ring edges (the face between
 // the last slot and slot 0 comes last), normalised; 0 where the sum is 0.
-void normals(SimdTarget simd, const RingView& ring, const Packed* position, uint32_t begin,
-             uint32_t end, float* nx, float* ny, float* nz);
+void normals(SimdTarget simd, const RingView& ring, const Packed* position, const Blocks& blocks,
+             float* nx, float* ny, float* nz);
+
+// Both of the above with the same bits: one walk around the ring costs little more than normals
+// alone.
+void normals_and_laplacian(SimdTarget simd, const RingView& ring, const Packed* position,
+                           const Blocks& blocks, float* nx, float* ny, float* nz,
+                           Packed* laplacian);
 
 // From unit normals n in mesh coordinates to unit normals m in the metric - area vectors map by the
 // inverse of the lengths - and to the unit step along m in mesh coordinates; 0 where n is 0:

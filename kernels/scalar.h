@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/blocks.h"
+#include "kernels/guided_stage.h"
 #include "kernels/image.h"
 #include "kernels/integrate.h"
 #include "kernels/nearby.h"
@@ -20,6 +22,15 @@ struct Triple {
   float x = 0, y = 0, z = 0;
 };
 
+// visit(vertex) for every vertex of the blocks.
+template <typename Visit>
+void for_vertices(const Blocks& blocks, const Visit& visit) {
+  for (size_t b = 0; b < blocks.count; ++b) {
+    const uint32_t begin = blocks.begin(b);
+    for (uint32_t v = begin; v < begin + kRingLanes; ++v) visit(v);
+  }
+}
+
 // Sums over the ring of one vertex, from slot 0 up. The vector kernels call them for vertices of
 // valence > kRingSlots, which are too rare to be worth vectors.
 Triple difference_sum(const RingView& ring, const Packed* position, uint32_t v);  // y - x
@@ -32,14 +43,16 @@ uint8_t violation_flags(const RingView& ring, const Packed* position, float min_
 float length_sum(const RingView& ring, const Packed* position, const Metric& metric, uint32_t v);
 
 // ring_forces.h
-void laplacian(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end,
+void laplacian(const RingView& ring, const Packed* position, const Blocks& blocks,
                Packed* laplacian);
+void normals_and_laplacian(const RingView& ring, const Packed* position, const Blocks& blocks,
+                           float* nx, float* ny, float* nz, Packed* laplacian);
 void curvature_force(const RingView& ring, const Packed* laplacian, float alpha_c, uint32_t begin,
                      uint32_t end, float* fx, float* fy, float* fz);
 void spring_force(const RingView& ring, const Packed* position, float alpha_e, float rest_length,
                   const Metric& metric, uint32_t begin, uint32_t end, float* fx, float* fy,
                   float* fz);
-void normals(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end, float* nx,
+void normals(const RingView& ring, const Packed* position, const Blocks& blocks, float* nx,
              float* ny, float* nz);
 void metric_normals(const Metric& metric, const float* nx, const float* ny, const float* nz,
                     uint32_t begin, uint32_t end, float* mx, float* my, float* mz, float* step_x,
@@ -64,14 +77,17 @@ void gradient_force(const GradientView& gradient, const Packed* position, const 
 
 // integrate.h
 void rk4_stage(int stage, const Rk4Coefficients& coefficients, const Rk4Streams& streams,
-               uint32_t begin, uint32_t end);
-float max_squared(const float* dx, const float* dy, const float* dz, uint32_t begin, uint32_t end);
-void clamp_movement(float max_length, float max_speed, float* dx, float* dy, float* dz, float* vx,
-                    float* vy, float* vz, uint32_t begin, uint32_t end);
-void move(const float* dx, const float* dy, const float* dz, float* px, float* py, float* pz,
-          Packed* packed, float* path, uint32_t begin, uint32_t end);
-double normal_energy_sum(const float* dx, const float* dy, const float* dz, const float* nx,
-                         const float* ny, const float* nz, uint32_t begin, uint32_t end);
+               const ConstFloat3s& force, const Blocks& blocks);
+float max_squared(const ConstFloat3s& moved, const Blocks& blocks);
+Movement move(const MoveBound& bound, const Float3s& moved, const ConstFloat3s& new_velocity,
+              const MoveStreams& streams, const Blocks& blocks);
+
+// guided_stage.h
+void guided_stage(int stage, const Rk4Coefficients& coefficients, const SurfaceForces& forces,
+                  const Rk4Streams& streams, const Blocks& blocks);
+Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& forces,
+                     const Rk4Streams& streams, const MoveBound& bound, const MoveStreams& ends,
+                     const Blocks& blocks);
 
 // nearby.h
 uint32_t near_or_turned(const NearbyView& view, const NearbyQuery& query, uint32_t* hits);

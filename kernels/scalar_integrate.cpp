@@ -1,4 +1,4 @@
-// Scalar twins of kernels/integrate.h.
+// Scalar twins of kernels/integrate.h and guided_stage.h.
 #include <cmath>
 
 #include "kernels/lane_sum.h"
@@ -7,6 +7,24 @@
 namespace plc::kernels::scalar {
 
 namespace {
+
+Triple at(const ConstFloat3s& s, uint32_t i) {
+  return {s.x[i], s.y[i], s.z[i]};
+}
+Triple at(const Float3s& s, uint32_t i) {
+  return {s.x[i], s.y[i], s.z[i]};
+}
+void set(const Float3s& s, uint32_t i, const Triple& a) {
+  s.x[i] = a.x;
+  s.y[i] = a.y;
+  s.z[i] = a.z;
+}
+float dot(const Triple& a, const Triple& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+Triple times(const Triple& a, float s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
 
 // One coordinate of one vertex; returns that coordinate of the next stage's position.
 float rk4_coordinate(int stage, const Rk4Coefficients& c, float p, float v, float f, float& s,
@@ -19,77 +37,127 @@ float rk4_coordinate(int stage, const Rk4Coefficients& c, float p, float v, floa
     a = v + (a + acceleration) * sixth;
     return p;
   }
-  d = stage == 0 ? w : d + (w + w);
+  if (stage != 0) d = (stage == 1 ? v : d) + (w + w);
   a = stage == 0 ? acceleration : a + (acceleration + acceleration);
   const float step = stage == 2 ? c.time_step : c.time_step * 0.5F;
   s = v + step * acceleration;
   return p + step * w;
 }
 
-float squared(float x, float y, float z) {
-  return x * x + y * y + z * z;
+// What stages change of a vertex.
+struct Rk4State {
+  Triple speed, moved, rate;
+};
+
+// Returns the next stage's position.
+Packed rk4_vertex(int stage, const Rk4Coefficients& c, const Rk4Streams& s, const Triple& force,
+                  uint32_t i, Rk4State& state) {
+  state = {at(s.speed, i), at(s.moved, i), at(s.rate, i)};
+  const Packed& p = s.position[i];
+  const Triple v = at(s.velocity, i);
+  Rk4State& t = state;
+  const float x = rk4_coordinate(stage, c, p.x, v.x, force.x, t.speed.x, t.moved.x, t.rate.x);
+  const float y = rk4_coordinate(stage, c, p.y, v.y, force.y, t.speed.y, t.moved.y, t.rate.y);
+  const float z = rk4_coordinate(stage, c, p.z, v.z, force.z, t.speed.z, t.moved.z, t.rate.z);
+  return {x, y, z, 0.0F};
 }
 
-void shorten(float longest, float& x, float& y, float& z) {
-  const float length = std::sqrt(squared(x, y, z));
-  if (!(length > longest)) return;
-  const float scale = longest / length;
-  x *= scale;
-  y *= scale;
-  z *= scale;
+void advance_vertex(int stage, const Rk4Coefficients& c, const Rk4Streams& s, const Triple& force,
+                    uint32_t i) {
+  Rk4State state;
+  const Packed next = rk4_vertex(stage, c, s, force, i, state);
+  set(s.moved, i, state.moved);
+  set(s.rate, i, state.rate);
+  if (stage == 3) return;
+  set(s.speed, i, state.speed);
+  s.stage[i] = next;
+}
+
+// (5) and (7).
+Triple surface_force(const SurfaceForces& f, uint32_t i) {
+  Triple bent;
+  if (f.ring.valence[i] != 0) {
+    const Triple around =
+        times(record_sum(f.ring, f.laplacian, i), 1.0F / static_cast<float>(f.ring.valence[i]));
+    const Packed& own = f.laplacian[i];
+    bent = times({own.x - around.x, own.y - around.y, own.z - around.z}, f.curvature);
+  }
+  float value = 0;
+  sample_trilinear(f.image, f.position + i, 0, 1, &value);
+  const Triple push = times(at(f.normal, i), f.attraction * (f.iso - value));
+  return {bent.x + push.x, bent.y + push.y, bent.z + push.z};
+}
+
+Triple shortened(const Triple& a, float longest) {
+  const float length = std::sqrt(dot(a, a));
+  return length > longest ? times(a, longest / length) : a;
+}
+
+// The sums of move().
+struct Sums {
+  double lane[kRingLanes] = {};
+  float longest = 0;
+  void add(const Triple& by, const Triple& normal, uint32_t i) {
+    const auto along = static_cast<double>(dot(by, normal));
+    lane[i % kRingLanes] += along * along;
+    longest = dot(by, by) > longest ? dot(by, by) : longest;
+  }
+};
+
+void move_vertex(const MoveBound& bound, const Triple& displacement, const Triple& new_velocity,
+                 const Float3s& moved, const MoveStreams& s, uint32_t i, Sums& sums) {
+  const Triple by = shortened(displacement, bound.length);
+  set(moved, i, by);
+  set(s.velocity, i, shortened(new_velocity, bound.speed));
+  const Packed& p = s.position[i];
+  s.moved_to[i] = {p.x + by.x, p.y + by.y, p.z + by.z, 0.0F};
+  s.path[i] += std::sqrt(dot(by, by));
+  sums.add(by, at(s.normal, i), i);
 }
 
 }  // namespace
 
-void rk4_stage(int stage, const Rk4Coefficients& coefficients, const Rk4Streams& s, uint32_t begin,
-               uint32_t end) {
-  for (uint32_t i = begin; i < end; ++i) {
-    const float x =
-        rk4_coordinate(stage, coefficients, s.px[i], s.vx[i], s.fx[i], s.sx[i], s.dx[i], s.ax[i]);
-    const float y =
-        rk4_coordinate(stage, coefficients, s.py[i], s.vy[i], s.fy[i], s.sy[i], s.dy[i], s.ay[i]);
-    const float z =
-        rk4_coordinate(stage, coefficients, s.pz[i], s.vz[i], s.fz[i], s.sz[i], s.dz[i], s.az[i]);
-    if (stage != 3) s.stage[i] = {x, y, z, 0.0F};
-  }
+void rk4_stage(int stage, const Rk4Coefficients& coefficients, const Rk4Streams& streams,
+               const ConstFloat3s& force, const Blocks& blocks) {
+  for_vertices(blocks,
+               [&](uint32_t i) { advance_vertex(stage, coefficients, streams, at(force, i), i); });
 }
 
-float max_squared(const float* dx, const float* dy, const float* dz, uint32_t begin, uint32_t end) {
+float max_squared(const ConstFloat3s& moved, const Blocks& blocks) {
   float longest = 0;
-  for (uint32_t i = begin; i < end; ++i) {
-    const float length = squared(dx[i], dy[i], dz[i]);
+  for_vertices(blocks, [&](uint32_t i) {
+    const float length = dot(at(moved, i), at(moved, i));
     longest = length > longest ? length : longest;
-  }
+  });
   return longest;
 }
 
-void clamp_movement(float max_length, float max_speed, float* dx, float* dy, float* dz, float* vx,
-                    float* vy, float* vz, uint32_t begin, uint32_t end) {
-  for (uint32_t i = begin; i < end; ++i) {
-    shorten(max_length, dx[i], dy[i], dz[i]);
-    shorten(max_speed, vx[i], vy[i], vz[i]);
-  }
+Movement move(const MoveBound& bound, const Float3s& moved, const ConstFloat3s& new_velocity,
+              const MoveStreams& streams, const Blocks& blocks) {
+  Sums sums;
+  for_vertices(blocks, [&](uint32_t i) {
+    move_vertex(bound, at(moved, i), at(new_velocity, i), moved, streams, i, sums);
+  });
+  return {add_lanes(sums.lane), sums.longest};
 }
 
-void move(const float* dx, const float* dy, const float* dz, float* px, float* py, float* pz,
-          Packed* packed, float* path, uint32_t begin, uint32_t end) {
-  for (uint32_t i = begin; i < end; ++i) {
-    px[i] += dx[i];
-    py[i] += dy[i];
-    pz[i] += dz[i];
-    packed[i] = {px[i], py[i], pz[i], 0.0F};
-    path[i] += std::sqrt(squared(dx[i], dy[i], dz[i]));
-  }
+void guided_stage(int stage, const Rk4Coefficients& coefficients, const SurfaceForces& forces,
+                  const Rk4Streams& streams, const Blocks& blocks) {
+  for_vertices(blocks, [&](uint32_t i) {
+    advance_vertex(stage, coefficients, streams, surface_force(forces, i), i);
+  });
 }
 
-double normal_energy_sum(const float* dx, const float* dy, const float* dz, const float* nx,
-                         const float* ny, const float* nz, uint32_t begin, uint32_t end) {
-  double lane[kRingLanes] = {};
-  for (uint32_t i = begin; i < end; ++i) {
-    const double along = static_cast<double>(dx[i] * nx[i] + dy[i] * ny[i] + dz[i] * nz[i]);
-    lane[i % kRingLanes] += along * along;
-  }
-  return add_lanes(lane);
+Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& forces,
+                     const Rk4Streams& streams, const MoveBound& bound, const MoveStreams& ends,
+                     const Blocks& blocks) {
+  Sums sums;
+  for_vertices(blocks, [&](uint32_t i) {
+    Rk4State end;
+    rk4_vertex(3, coefficients, streams, surface_force(forces, i), i, end);
+    move_vertex(bound, end.moved, end.rate, streams.moved, ends, i, sums);
+  });
+  return {add_lanes(sums.lane), sums.longest};
 }
 
 }  // namespace plc::kernels::scalar

@@ -98,13 +98,19 @@ float length_sum(const RingView& ring, const Packed* position, const Metric& met
   return sum;
 }
 
-void laplacian(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end,
+void laplacian(const RingView& ring, const Packed* position, const Blocks& blocks,
                Packed* laplacian) {
-  for (uint32_t v = begin; v < end; ++v) {
+  for_vertices(blocks, [&](uint32_t v) {
     const Triple sum = difference_sum(ring, position, v);
     const float inverse = inverse_valence(ring, v);
     laplacian[v] = {sum.x * inverse, sum.y * inverse, sum.z * inverse, 0.0F};
-  }
+  });
+}
+
+void normals_and_laplacian(const RingView& ring, const Packed* position, const Blocks& blocks,
+                           float* nx, float* ny, float* nz, Packed* laplacian) {
+  normals(ring, position, blocks, nx, ny, nz);
+  scalar::laplacian(ring, position, blocks, laplacian);
 }
 
 void curvature_force(const RingView& ring, const Packed* laplacian, float alpha_c, uint32_t begin,
@@ -130,16 +136,16 @@ void spring_force(const RingView& ring, const Packed* position, float alpha_e, f
   }
 }
 
-void normals(const RingView& ring, const Packed* position, uint32_t begin, uint32_t end, float* nx,
+void normals(const RingView& ring, const Packed* position, const Blocks& blocks, float* nx,
              float* ny, float* nz) {
-  for (uint32_t v = begin; v < end; ++v) {
+  for_vertices(blocks, [&](uint32_t v) {
     const Triple sum = normal_sum(ring, position, v);
     const float length = std::sqrt(squared(sum));
     const float inverse = length > 0.0F ? 1.0F / length : 0.0F;
     nx[v] = sum.x * inverse;
     ny[v] = sum.y * inverse;
     nz[v] = sum.z * inverse;
-  }
+  });
 }
 
 void metric_normals(const Metric& metric, const float* nx, const float* ny, const float* nz,

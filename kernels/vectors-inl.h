@@ -103,24 +103,40 @@ HWY_INLINE hn::Vec<D> load_blocks(D d, const Load& load, uint32_t lane) {
 using QuadTag = hn::CappedTag<float, 4>;
 using Quad = hn::Vec<QuadTag>;
 
-// Transposes one record of four floats per lane: field f of load(l) goes to lane l of the result f.
-// One load per record and shuffles inside 16-byte blocks: half the cost of gathers.
+// One record of four floats per lane, as they are loaded: vector i holds the records of lanes i,
+// i + 4, ...
+struct Records {
+  Floats a, b, c, e;
+};
+// load(lane) is the record of a lane.
+template <class Load>
+HWY_INLINE Records load_records(const Load& load) {
+  const FloatTag d;
+  return {load_blocks(d, load, 0), load_blocks(d, load, 1), load_blocks(d, load, 2),
+          load_blocks(d, load, 3)};
+}
+
+// Transposes records: field f of the record of lane l goes to lane l of the result f. One load per
+// record and shuffles inside 16-byte blocks: half the cost of gathers.
 struct Floats4 {
   Floats x, y, z, w;
 };
-template <class Load>
-HWY_INLINE Floats4 load_transposed(const Load& load) {
+HWY_INLINE Floats4 transposed(const Records& r) {
   const FloatTag d;
-  const Floats a = load_blocks(d, load, 0);
-  const Floats b = load_blocks(d, load, 1);
-  const Floats c = load_blocks(d, load, 2);
-  const Floats e = load_blocks(d, load, 3);
-  const Floats ac_low = hn::InterleaveLower(d, a, c);   // a.x c.x a.y c.y
-  const Floats be_low = hn::InterleaveLower(d, b, e);   // b.x e.x b.y e.y
-  const Floats ac_high = hn::InterleaveUpper(d, a, c);  // a.z c.z a.w c.w
-  const Floats be_high = hn::InterleaveUpper(d, b, e);
+  const Floats ac_low = hn::InterleaveLower(d, r.a, r.c);   // a.x c.x a.y c.y
+  const Floats be_low = hn::InterleaveLower(d, r.b, r.e);   // b.x e.x b.y e.y
+  const Floats ac_high = hn::InterleaveUpper(d, r.a, r.c);  // a.z c.z a.w c.w
+  const Floats be_high = hn::InterleaveUpper(d, r.b, r.e);
   return {hn::InterleaveLower(d, ac_low, be_low), hn::InterleaveUpper(d, ac_low, be_low),
           hn::InterleaveLower(d, ac_high, be_high), hn::InterleaveUpper(d, ac_high, be_high)};
+}
+HWY_INLINE Floats3 transposed3(const Records& records) {
+  const Floats4 r = transposed(records);
+  return {r.x, r.y, r.z};
+}
+template <class Load>
+HWY_INLINE Floats4 load_transposed(const Load& load) {
+  return transposed(load_records(load));
 }
 
 // Records index[0 .. N-1].

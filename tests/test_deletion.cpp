@@ -89,7 +89,7 @@ TEST_CASE("the merged vertex goes where it is told, with the mean velocity", "[d
   mesh.operations[e.v] = 7;
   plc::delete_edge(mesh, e, {9, 8, 7});
   CHECK(mesh.at(e.u).x == 9);
-  CHECK(mesh.position.at(e.u).y == 8);
+  CHECK(mesh.at(e.u).y == 8);
   CHECK(mesh.velocity.at(e.u).x == 2);
   CHECK(mesh.velocity.at(e.u).z == 2);
   CHECK(mesh.operations[e.u] == 7);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "kernel_fixtures.h"
 #include "kernels/scalar.h"
@@ -9,31 +10,45 @@
 namespace {
 
 using namespace fixtures;
+using plc::Blocks;
 using plc::Packed;
 using plc::SimdTarget;
+using plc::kernels::ConstFloat3s;
+using plc::kernels::Float3s;
+using plc::kernels::MoveBound;
+using plc::kernels::Movement;
+using plc::kernels::MoveStreams;
 using plc::kernels::Rk4Coefficients;
 using plc::kernels::Rk4Streams;
 namespace kernels = plc::kernels;
 namespace scalar = plc::kernels::scalar;
 
-// The seven vector streams of Rk4Streams and its packed positions.
+// The streams of a step; p in packed positions too.
 struct Particles {
   std::vector<float> p[3], v[3], f[3], s[3], d[3], a[3];
-  std::vector<Packed> stage;
+  std::vector<Packed> start, stage;
 
-  Particles(uint32_t count, uint32_t seed) : stage(count, Packed{7, 7, 7, 7}) {
+  Particles(uint32_t count, uint32_t seed) : start(count), stage(count, Packed{7, 7, 7, 7}) {
     for (uint32_t axis = 0; axis < 3; ++axis) {
       for (std::vector<float>* stream :
            {&p[axis], &v[axis], &f[axis], &s[axis], &d[axis], &a[axis]}) {
         *stream = random_floats(count, -3.0F, 3.0F, ++seed);
       }
     }
+    pack();
   }
+  void pack() {
+    for (size_t i = 0; i < start.size(); ++i) start[i] = {p[0][i], p[1][i], p[2][i], 0.0F};
+  }
+  Blocks blocks() const { return Blocks::range(0, static_cast<uint32_t>(start.size())); }
   Rk4Streams streams() {
-    return {p[0].data(), p[1].data(), p[2].data(), v[0].data(), v[1].data(),
-            v[2].data(), f[0].data(), f[1].data(), f[2].data(), s[0].data(),
-            s[1].data(), s[2].data(), d[0].data(), d[1].data(), d[2].data(),
-            a[0].data(), a[1].data(), a[2].data(), stage.data()};
+    return {start.data(), fixed(v), three(s), three(d), three(a), stage.data()};
+  }
+  static Float3s three(std::vector<float> (&of)[3]) {
+    return {of[0].data(), of[1].data(), of[2].data()};
+  }
+  static ConstFloat3s fixed(const std::vector<float> (&of)[3]) {
+    return {of[0].data(), of[1].data(), of[2].data()};
   }
   std::vector<float> all() const {
     std::vector<float> values = flatten(stage);
@@ -54,16 +69,15 @@ double oscillate(SimdTarget simd, const Rk4Coefficients& c, float stiffness, int
     std::fill(all.v[axis].begin(), all.v[axis].end(), 0.0F);
   }
   for (int step = 0; step < steps; ++step) {
-    for (uint32_t i = 0; i < plc::kRingLanes; ++i) {
-      all.stage[i] = {all.p[0][i], all.p[1][i], all.p[2][i], 0.0F};
-    }
+    all.pack();
+    all.stage = all.start;
     for (int stage = 0; stage < 4; ++stage) {
       for (uint32_t i = 0; i < plc::kRingLanes; ++i) {
         all.f[0][i] = -stiffness * all.stage[i].x;
         all.f[1][i] = -stiffness * all.stage[i].y;
         all.f[2][i] = -stiffness * all.stage[i].z;
       }
-      kernels::rk4_stage(simd, stage, c, all.streams(), 0, plc::kRingLanes);
+      kernels::rk4_stage(simd, stage, c, all.streams(), Particles::fixed(all.f), all.blocks());
     }
     for (uint32_t axis = 0; axis < 3; ++axis) {
       for (uint32_t i = 0; i < plc::kRingLanes; ++i) all.p[axis][i] += all.d[axis][i];
@@ -87,12 +101,14 @@ TEST_CASE("every Runge-Kutta stage has the bits of its scalar twin", "[kernels]"
         Particles got(80, 20);
         Particles twin(80, 20);
         const Particles before(80, 20);
-        kernels::rk4_stage(simd, stage, c, got.streams(), begin, end);
-        scalar::rk4_stage(stage, c, twin.streams(), begin, end);
+        const Blocks blocks = Blocks::range(begin, end);
+        kernels::rk4_stage(simd, stage, c, got.streams(), Particles::fixed(got.f), blocks);
+        scalar::rk4_stage(stage, c, twin.streams(), Particles::fixed(twin.f), blocks);
         REQUIRE(first_difference(got.all(), twin.all()) == -1);
         for (uint32_t i = 0; i < 80; ++i) {
           const bool in_range = i >= begin && i < end;
-          REQUIRE((got.d[0][i] != before.d[0][i]) == in_range);
+          REQUIRE((got.a[0][i] != before.a[0][i]) == in_range);
+          REQUIRE((got.d[0][i] != before.d[0][i]) == (in_range && stage != 0));
           REQUIRE((got.stage[i].w == 0.0F) == (in_range && stage != 3));
         }
       }
@@ -126,104 +142,108 @@ TEST_CASE("the longest squared displacement is found in any lane and NaN is pass
       dx[0] = dy[79] = 100.0F;  // outside the range
       dz[place] = -3.0F;
       dx[(place - 16 + 5) % 48 + 16] = std::nanf("");
-      const float got = kernels::max_squared(simd, dx.data(), dy.data(), dz.data(), 16, 64);
+      const ConstFloat3s moved{dx.data(), dy.data(), dz.data()};
+      const float got = kernels::max_squared(simd, moved, Blocks::range(16, 64));
       REQUIRE(got == 0.0625F + 0.25F + 9.0F);
-      REQUIRE(got == scalar::max_squared(dx.data(), dy.data(), dz.data(), 16, 64));
+      REQUIRE(got == scalar::max_squared(moved, Blocks::range(16, 64)));
     }
     const float none = 0.0F;
-    REQUIRE(kernels::max_squared(simd, &none, &none, &none, 0, 0) == 0.0F);
+    REQUIRE(kernels::max_squared(simd, {&none, &none, &none}, Blocks()) == 0.0F);
+  }
+}
+
+namespace {
+
+// move() with its streams.
+struct Mover {
+  Particles all;
+  std::vector<Packed> moved_to;
+  std::vector<float> path;
+  Movement movement;
+
+  explicit Mover(uint32_t count) : all(count, 40), moved_to(count, Packed{7, 7, 7, 7}) {
+    path = random_floats(count, 0, 4, 61);
+    for (auto& axis : all.d) axis[20] = 0.0F;
+  }
+  template <typename Move>
+  void run(const Move& move, const MoveBound& bound, const Blocks& blocks) {
+    const MoveStreams ends{all.start.data(), moved_to.data(), Particles::three(all.v),
+                           Particles::fixed(all.f), path.data()};
+    movement = move(bound, Particles::three(all.d), Particles::fixed(all.a), ends, blocks);
+  }
+};
+
+constexpr MoveBound kBound{1.5F, 2.5F};
+
+}  // namespace
+
+TEST_CASE("the move has the bits of its scalar twin, on the listed blocks only", "[kernels]") {
+  const std::vector<uint32_t> list = {1, 2, 4};
+  const Blocks blocks{list.data(), list.size()};
+  Mover twin(96);
+  twin.run(scalar::move, kBound, blocks);
+  REQUIRE(twin.moved_to[3 * plc::kRingLanes].w == 7);
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    CAPTURE(plc::simd_target_name(simd));
+    Mover got(96);
+    got.run([&](const auto&... a) { return kernels::move(simd, a...); }, kBound, blocks);
+    CHECK(first_difference(got.all.all(), twin.all.all()) == -1);
+    CHECK(first_difference(flatten(got.moved_to), flatten(twin.moved_to)) == -1);
+    CHECK(first_difference(got.path, twin.path) == -1);
+    CHECK(got.movement.energy == twin.movement.energy);
+    CHECK(got.movement.longest2 == twin.movement.longest2);
   }
 }
 
 TEST_CASE("movements longer than the bound are shortened, the others keep their bits",
           "[kernels]") {
-  const float max_length = 1.5F, max_speed = 2.5F;
-  for (const SimdTarget simd : plc::available_simd_targets()) {
-    CAPTURE(plc::simd_target_name(simd));
-    Particles got(80, 40);
-    Particles twin(80, 40);
-    got.d[0][20] = got.d[1][20] = got.d[2][20] = 0.0F;
-    twin.d[0][20] = twin.d[1][20] = twin.d[2][20] = 0.0F;
-    const Particles before = got;
-    kernels::clamp_movement(simd, max_length, max_speed, got.d[0].data(), got.d[1].data(),
-                            got.d[2].data(), got.v[0].data(), got.v[1].data(), got.v[2].data(), 16,
-                            64);
-    scalar::clamp_movement(max_length, max_speed, twin.d[0].data(), twin.d[1].data(),
-                           twin.d[2].data(), twin.v[0].data(), twin.v[1].data(), twin.v[2].data(),
-                           16, 64);
-    REQUIRE(first_difference(got.all(), twin.all()) == -1);
-    int shortened = 0;
-    for (uint32_t i = 0; i < 80; ++i) {
-      CAPTURE(i);
-      const auto check = [&](const std::vector<float>(&own)[3], const std::vector<float>(&old)[3],
-                             float bound) {
-        const double length = std::hypot(double{own[0][i]}, double{own[1][i]}, double{own[2][i]});
-        const double was = std::hypot(double{old[0][i]}, double{old[1][i]}, double{old[2][i]});
-        if (i < 16 || i >= 64 || was <= double{bound}) {
-          for (int a = 0; a < 3; ++a) REQUIRE(own[a][i] == old[a][i]);
-          return;
-        }
-        ++shortened;
-        REQUIRE(length == Approx(double{bound}).epsilon(1e-6));
-        for (int a = 0; a < 3; ++a) {
-          REQUIRE(double{own[a][i]} * was == Approx(double{old[a][i]} * length).margin(1e-5));
-        }
-      };
-      check(got.d, before.d, max_length);
-      check(got.v, before.v, max_speed);
-    }
-    REQUIRE(shortened > 40);
+  const Mover before(80);
+  Mover after(80);
+  after.run(scalar::move, kBound, Blocks::range(0, 80));
+  int shortened = 0;
+  for (uint32_t i = 0; i < 80; ++i) {
+    CAPTURE(i);
+    const auto check = [&](const std::vector<float>(&own)[3], const std::vector<float>(&old)[3],
+                           float bound) {
+      const double length = std::hypot(double{own[0][i]}, double{own[1][i]}, double{own[2][i]});
+      const double was = std::hypot(double{old[0][i]}, double{old[1][i]}, double{old[2][i]});
+      if (was <= double{bound}) {
+        for (int a = 0; a < 3; ++a) REQUIRE(own[a][i] == old[a][i]);
+        return;
+      }
+      ++shortened;
+      REQUIRE(length == Approx(double{bound}).epsilon(1e-6));
+      for (int a = 0; a < 3; ++a) {
+        REQUIRE(double{own[a][i]} * was == Approx(double{old[a][i]} * length).margin(1e-5));
+      }
+    };
+    check(after.all.d, before.all.d, kBound.length);
+    check(after.all.v, before.all.a, kBound.speed);
   }
+  REQUIRE(shortened > 40);
 }
 
-TEST_CASE("moving adds the displacement and lengthens the path", "[kernels]") {
-  for (const SimdTarget simd : plc::available_simd_targets()) {
-    CAPTURE(plc::simd_target_name(simd));
-    Particles got(80, 60);
-    Particles twin(80, 60);
-    const Particles before(80, 60);
-    std::vector<float> path = random_floats(80, 0, 4, 61);
-    const std::vector<float> path_before = path;
-    std::vector<float> twin_path = path;
-    kernels::move(simd, got.d[0].data(), got.d[1].data(), got.d[2].data(), got.p[0].data(),
-                  got.p[1].data(), got.p[2].data(), got.stage.data(), path.data(), 16, 64);
-    scalar::move(twin.d[0].data(), twin.d[1].data(), twin.d[2].data(), twin.p[0].data(),
-                 twin.p[1].data(), twin.p[2].data(), twin.stage.data(), twin_path.data(), 16, 64);
-    REQUIRE(first_difference(got.all(), twin.all()) == -1);
-    REQUIRE(first_difference(path, twin_path) == -1);
-    for (uint32_t i = 0; i < 80; ++i) {
-      const bool in_range = i >= 16 && i < 64;
-      const double length =
-          std::hypot(double{before.d[0][i]}, double{before.d[1][i]}, double{before.d[2][i]});
-      CAPTURE(i);
-      REQUIRE(got.p[1][i] == before.p[1][i] + (in_range ? before.d[1][i] : 0.0F));
-      REQUIRE(double{path[i]} ==
-              Approx(double{path_before[i]} + (in_range ? length : 0.0)).margin(1e-5));
-      if (!in_range) continue;
-      REQUIRE(got.stage[i].x == got.p[0][i]);
-      REQUIRE(got.stage[i].y == got.p[1][i]);
-      REQUIRE(got.stage[i].z == got.p[2][i]);
-      REQUIRE(got.stage[i].w == 0.0F);
-    }
-  }
-}
-
-TEST_CASE("the energy along the normals has the same bits for every target", "[kernels]") {
-  Particles all(4096, 80);
-  double expected = 0;
+TEST_CASE("moving adds the displacement, lengthens the path and measures the movement",
+          "[kernels]") {
+  const Mover before(4096);
+  Mover after(4096);
+  after.run(scalar::move, {100, 100}, Blocks::range(32, 4080));
+  double energy = 0, longest = 0;
   for (uint32_t i = 32; i < 4080; ++i) {
+    const auto& d = before.all.d;
+    const double length = std::hypot(double{d[0][i]}, double{d[1][i]}, double{d[2][i]});
+    CAPTURE(i);
+    REQUIRE(after.moved_to[i].x == before.all.p[0][i] + d[0][i]);
+    REQUIRE(after.moved_to[i].y == before.all.p[1][i] + d[1][i]);
+    REQUIRE(after.moved_to[i].z == before.all.p[2][i] + d[2][i]);
+    REQUIRE(after.moved_to[i].w == 0.0F);
+    REQUIRE(double{after.path[i]} == Approx(double{before.path[i]} + length).margin(1e-5));
     double along = 0;
-    for (int a = 0; a < 3; ++a) along += double{all.d[a][i]} * double{all.f[a][i]};
-    expected += along * along;
+    for (int a = 0; a < 3; ++a) along += double{d[a][i]} * double{before.all.f[a][i]};
+    energy += along * along;
+    longest = std::max(longest, length);
   }
-  const double twin =
-      scalar::normal_energy_sum(all.d[0].data(), all.d[1].data(), all.d[2].data(), all.f[0].data(),
-                                all.f[1].data(), all.f[2].data(), 32, 4080);
-  REQUIRE(twin == Approx(expected).epsilon(1e-6));
-  for (const SimdTarget simd : plc::available_simd_targets()) {
-    CAPTURE(plc::simd_target_name(simd));
-    REQUIRE(kernels::normal_energy_sum(simd, all.d[0].data(), all.d[1].data(), all.d[2].data(),
-                                       all.f[0].data(), all.f[1].data(), all.f[2].data(), 32,
-                                       4080) == twin);
-  }
+  CHECK(after.movement.energy == Approx(energy).epsilon(1e-6));
+  CHECK(double{after.movement.longest2} == Approx(longest * longest).epsilon(1e-6));
+  CHECK(after.path[31] == before.path[31]);
 }

@@ -64,7 +64,7 @@ TEST_CASE("a new vertex has its position, no ring and is due for a check", "[mes
   CHECK(mesh.idle[v] == Mesh::kAwake);
   CHECK(mesh.risk[v] == 1);
   CHECK(mesh.at(v).y == 2);
-  CHECK(mesh.position.at(v).z == 3);
+  CHECK(mesh.at(v).z == 3);
   CHECK(mesh.velocity.at(v).x == 4);
   mesh.set_ring(v, ring_of({1, 2, 3}));
   CHECK(mesh.alive(v));
@@ -75,7 +75,7 @@ TEST_CASE("every stream is padded to whole blocks and starts at zero", "[mesh]")
   Mesh mesh;
   add_vertices(mesh, 17);
   CHECK(mesh.padded() == 32);
-  for (const auto* stream : {&mesh.position, &mesh.velocity, &mesh.normal, &mesh.displacement}) {
+  for (const auto* stream : {&mesh.velocity, &mesh.normal, &mesh.displacement}) {
     CHECK(stream->x.size() == 32);
     CHECK(stream->y.size() == 32);
     CHECK(stream->z.size() == 32);
@@ -361,7 +361,6 @@ TEST_CASE("each broken invariant is named", "[mesh]") {
                m.place(3, {std::numeric_limits<float>::quiet_NaN(), 0, 0});
              }),
              Contains("vertex 3: its position is not finite"));
-  CHECK_THAT(broken([](Mesh& m) { m.position.x[2] += 1; }), Contains("packed position"));
   CHECK_THAT(broken([](Mesh& m) {
                Neighbors ring = m.ring(9);
                std::reverse(ring.data(), ring.data() + ring.size());

@@ -90,8 +90,9 @@ TEST_CASE("the Laplacian is the mean of the ring minus the vertex", "[kernels]")
       const Packed untouched{kUntouched, kUntouched, kUntouched, kUntouched};
       std::vector<Packed> got(rings.count(), untouched);
       std::vector<Packed> twin = got;
-      kernels::laplacian(simd, rings.view(), rings.position.data(), begin, end, got.data());
-      scalar::laplacian(rings.view(), rings.position.data(), begin, end, twin.data());
+      const auto blocks = plc::Blocks::range(begin, end);
+      kernels::laplacian(simd, rings.view(), rings.position.data(), blocks, got.data());
+      scalar::laplacian(rings.view(), rings.position.data(), blocks, twin.data());
       REQUIRE(first_difference(flatten(got), flatten(twin)) == -1);
       for (uint32_t v = 0; v < rings.count(); ++v) {
         CAPTURE(v);
@@ -111,7 +112,8 @@ TEST_CASE("the curvature force is equation (5)", "[kernels]") {
   const RandomRings rings = mixed_rings(10, 2);
   const float alpha = -0.7F;  // a negative factor would turn the 0 of dead vertices into -0
   std::vector<Packed> laplacian(rings.count());
-  scalar::laplacian(rings.view(), rings.position.data(), 0, rings.count(), laplacian.data());
+  scalar::laplacian(rings.view(), rings.position.data(), plc::Blocks::range(0, rings.count()),
+                    laplacian.data());
   std::vector<Vector> expected(rings.count());
   for (uint32_t v = 0; v < rings.count(); ++v) {
     const auto valence = static_cast<double>(rings.rings[v].size());
@@ -186,13 +188,38 @@ TEST_CASE("normals are the sum of the cross products around the ring, of length 
       CAPTURE(plc::simd_target_name(simd), begin, end);
       Streams got(rings.count(), kUntouched);
       Streams twin(rings.count(), kUntouched);
-      kernels::normals(simd, rings.view(), rings.position.data(), begin, end, got.x.data(),
+      const auto blocks = plc::Blocks::range(begin, end);
+      kernels::normals(simd, rings.view(), rings.position.data(), blocks, got.x.data(),
                        got.y.data(), got.z.data());
-      scalar::normals(rings.view(), rings.position.data(), begin, end, twin.x.data(), twin.y.data(),
+      scalar::normals(rings.view(), rings.position.data(), blocks, twin.x.data(), twin.y.data(),
                       twin.z.data());
       REQUIRE(first_difference(got.all(), twin.all()) == -1);
       require_near(got, expected, begin, end, 1e-4);
     }
+  }
+}
+
+TEST_CASE("normals and Laplacians of one walk have the bits of two, on the listed blocks only",
+          "[kernels]") {
+  const RandomRings rings = mixed_rings(10, 12);
+  const std::vector<uint32_t> list = {0, 3, 4, 5, 9};
+  const plc::Blocks blocks{list.data(), list.size()};
+  const Packed untouched{kUntouched, kUntouched, kUntouched, kUntouched};
+  std::vector<Packed> expected(rings.count(), untouched);
+  Streams normal(rings.count(), kUntouched);
+  scalar::laplacian(rings.view(), rings.position.data(), blocks, expected.data());
+  scalar::normals(rings.view(), rings.position.data(), blocks, normal.x.data(), normal.y.data(),
+                  normal.z.data());
+  REQUIRE(expected[3 * plc::kRingLanes].w == 0);
+  REQUIRE(expected[2 * plc::kRingLanes].w == kUntouched);
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    CAPTURE(plc::simd_target_name(simd));
+    std::vector<Packed> laplacian(rings.count(), untouched);
+    Streams got(rings.count(), kUntouched);
+    kernels::normals_and_laplacian(simd, rings.view(), rings.position.data(), blocks, got.x.data(),
+                                   got.y.data(), got.z.data(), laplacian.data());
+    CHECK(first_difference(flatten(laplacian), flatten(expected)) == -1);
+    CHECK(first_difference(got.all(), normal.all()) == -1);
   }
 }
 
@@ -211,8 +238,8 @@ TEST_CASE("the normal of a vertex seen with its ring counter-clockwise points at
   const RingView view{columns.data(), valence.data(), nullptr};
   for (const SimdTarget simd : plc::available_simd_targets()) {
     Streams got(plc::kRingLanes, kUntouched);
-    kernels::normals(simd, view, position.data(), 0, plc::kRingLanes, got.x.data(), got.y.data(),
-                     got.z.data());
+    kernels::normals(simd, view, position.data(), plc::Blocks{nullptr, 1, 0}, got.x.data(),
+                     got.y.data(), got.z.data());
     REQUIRE(got.x[0] == 0.0F);
     REQUIRE(got.y[0] == 0.0F);
     REQUIRE(got.z[0] == 1.0F);
@@ -297,8 +324,8 @@ TEST_CASE("normals of a metric are those of the surface with its axes stretched"
   const plc::Metric metric = kMetrics[1];
   Streams normal(n, 0), stretched(n, 0);
   const auto measure = [&](Streams& to) {
-    scalar::normals(rings.view(), rings.position.data(), 0, n, to.x.data(), to.y.data(),
-                    to.z.data());
+    scalar::normals(rings.view(), rings.position.data(), plc::Blocks::range(0, n), to.x.data(),
+                    to.y.data(), to.z.data());
   };
   measure(normal);
   for (Packed& p : rings.position) p = {p.x * metric.x, p.y * metric.y, p.z * metric.z, 0};

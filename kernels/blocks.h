@@ -1,0 +1,27 @@
+// Which blocks of vertices a kernel works on.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "kernels/ring.h"
+
+namespace plc {
+
+// Blocks of kRingLanes vertices, by index, ascending: block b holds the vertices kRingLanes * b and
+// up. A list, or where there is none `count` blocks from `first` on. Borrows the list.
+struct Blocks {
+  const uint32_t* list = nullptr;
+  size_t count = 0;
+  uint32_t first = 0;
+
+  // The first vertex of the i-th block.
+  uint32_t begin(size_t i) const {
+    return (list == nullptr ? first + static_cast<uint32_t>(i) : list[i]) * kRingLanes;
+  }
+  // Vertices [begin, end), both multiples of kRingLanes.
+  static Blocks range(uint32_t begin, uint32_t end) {
+    return {nullptr, (end - begin) / kRingLanes, begin / kRingLanes};
+  }
+};
+
+}  // namespace plc

@@ -1,0 +1,36 @@
+// A Runge-Kutta stage under the two forces that every run has, curvature (5) and image (7), in one
+// pass: the forces stay in registers. On 100,000 vertices a stage waits for memory; passes of their
+// own for each force and for the update moved twice the bytes.
+#pragma once
+#include "kernels/blocks.h"
+#include "kernels/image.h"
+#include "kernels/integrate.h"
+#include "kernels/ring.h"
+#include "kernels/simd.h"
+
+// Bits do not depend on `simd`, and are those of curvature_force, iso_force, rk4_stage and move one
+// after the other.
+namespace plc::kernels {
+
+struct SurfaceForces {
+  RingView ring;
+  const Packed* laplacian;  // of the stage, from laplacian() over the whole mesh
+  float curvature;          // alpha_c
+  ImageView image;
+  const Packed* position;  // of the stage
+  ConstFloat3s normal;     // the step along the normal
+  float attraction;        // delta alpha_I
+  float iso;
+};
+
+// Stages 0..2, and stage 3 where something else comes before the move.
+void guided_stage(SimdTarget simd, int stage, const Rk4Coefficients& coefficients,
+                  const SurfaceForces& forces, const Rk4Streams& streams, const Blocks& blocks);
+
+// Stage 3 and the move. `streams.rate` is not written; `ends.velocity` may be the velocity at the
+// start of the step.
+Movement guided_move(SimdTarget simd, const Rk4Coefficients& coefficients,
+                     const SurfaceForces& forces, const Rk4Streams& streams, const MoveBound& bound,
+                     const MoveStreams& ends, const Blocks& blocks);
+
+}  // namespace plc::kernels

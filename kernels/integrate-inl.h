@@ -1,0 +1,117 @@
+// The lanes of kernels/integrate.h, for the kernels that move vertices. Included once per target.
+#if defined(PELLICLE_KERNELS_INTEGRATE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef PELLICLE_KERNELS_INTEGRATE_INL_H
+#undef PELLICLE_KERNELS_INTEGRATE_INL_H
+#else
+#define PELLICLE_KERNELS_INTEGRATE_INL_H
+#endif
+
+#include "kernels/integrate.h"
+#include "kernels/lanes-inl.h"
+#include "kernels/vectors-inl.h"
+
+#if !PLC_SCALAR_TARGET
+HWY_BEFORE_NAMESPACE();
+namespace plc::kernels::HWY_NAMESPACE {
+
+template <class Streams>
+HWY_INLINE Floats3 load3(const Streams& s, uint32_t i) {
+  return load3(s.x, s.y, s.z, i);
+}
+HWY_INLINE void store3(const Floats3& a, const Float3s& s, uint32_t i) {
+  store3(a, s.x, s.y, s.z, i);
+}
+
+// Coefficients of stage kStage in all lanes.
+template <int kStage>
+struct Rk4Lanes {
+  Floats damping, inverse_mass, sixth, step;
+  HWY_INLINE explicit Rk4Lanes(const Rk4Coefficients& c)
+      : damping(hn::Set(FloatTag(), c.damping)),
+        inverse_mass(hn::Set(FloatTag(), c.inverse_mass)),
+        sixth(hn::Set(FloatTag(), c.time_step / 6.0F)),
+        step(hn::Set(FloatTag(), kStage == 2 ? c.time_step : c.time_step * 0.5F)) {}
+
+  // Stages 0..2 of the vertices i .. under a force.
+  HWY_INLINE void advance(const Rk4Streams& s, const Floats3& force, uint32_t i) const {
+    const Floats3 velocity = load3(s.velocity, i);
+    const Floats3 w = kStage == 0 ? velocity : load3(s.speed, i);
+    const Floats3 a = (force - w * damping) * inverse_mass;
+    store_packed(load_packed(s.position + i) + w * step, s.stage + i);
+    store3(velocity + a * step, s.speed, i);
+    if constexpr (kStage == 0) {
+      store3(a, s.rate, i);
+    } else {
+      store3((kStage == 1 ? velocity : load3(ConstFloat3s{s.moved.x, s.moved.y, s.moved.z}, i)) +
+                 (w + w),
+             s.moved, i);
+      store3(load3(s.rate, i) + (a + a), s.rate, i);
+    }
+  }
+};
+
+// What stage 3 finds.
+struct Arrival {
+  Floats3 moved, velocity;
+};
+HWY_INLINE Arrival arrive(const Rk4Lanes<3>& c, const Rk4Streams& s, const Floats3& force,
+                          uint32_t i) {
+  const Floats3 w = load3(s.speed, i);
+  const Floats3 a = (force - w * c.damping) * c.inverse_mass;
+  return {(load3(s.moved, i) + w) * c.sixth,
+          load3(s.velocity, i) + (load3(s.rate, i) + a) * c.sixth};
+}
+
+HWY_INLINE Floats3 shortened(const Floats3& a, Floats squared, Floats longest) {
+  const FloatTag d;
+  const Floats length = hn::Sqrt(squared);
+  const FloatMask too_long = hn::Gt(length, longest);
+  // Most vectors are short enough: times 1 changes no bit.
+  return a * hn::IfThenElse(too_long, hn::Div(longest, length), hn::Set(d, 1.0F));
+}
+
+// Ends the step of vertex after vertex and measures it.
+class MoveLanes {
+ public:
+  HWY_INLINE explicit MoveLanes(const MoveBound& bound)
+      : length_(hn::Set(FloatTag(), bound.length)), speed_(hn::Set(FloatTag(), bound.speed)) {}
+
+  // Lanes kLanes * part .. of the block at `begin`.
+  HWY_INLINE void move(const Arrival& arrival, const Float3s& moved, const MoveStreams& s,
+                       uint32_t begin, uint32_t part) {
+    const FloatTag d;
+    const uint32_t i = begin + part * kLanes;
+    const Floats3& v = arrival.velocity;
+    const Floats3 by = shortened(arrival.moved, dot(arrival.moved, arrival.moved), length_);
+    const Floats squared = dot(by, by);
+    store3(by, moved, i);
+    store3(shortened(v, dot(v, v), speed_), s.velocity, i);
+    store_packed(load_packed(s.position + i) + by, s.moved_to + i);
+    hn::StoreU(hn::Add(hn::LoadU(d, s.path + i), hn::Sqrt(squared)), d, s.path + i);
+    longest_ = hn::IfThenElse(hn::Gt(squared, longest_), squared, longest_);
+    const Floats along = dot(by, load3(s.normal, i));
+    const Doubles low = low_doubles(along);
+    const Doubles high = high_doubles(along);
+    energy_.add(part, hn::Mul(low, low), hn::Mul(high, high));
+  }
+  HWY_INLINE Movement total() const { return {energy_.total(), greatest(longest_)}; }
+
+  static HWY_INLINE float greatest(Floats values) {
+    alignas(64) float lane[kLanes];
+    hn::Store(values, FloatTag(), lane);
+    float result = 0;
+    for (const float value : lane) result = value > result ? value : result;
+    return result;
+  }
+
+ private:
+  Floats length_, speed_;
+  Floats longest_ = hn::Zero(FloatTag());
+  LaneSums energy_;
+};
+
+}  // namespace plc::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
+
+#endif  // include guard per target
