@@ -21,14 +21,13 @@ using scalar::guided_stage;
 #else
 
 // (5) and (7) of the vertices i .. i + kLanes - 1.
-HWY_INLINE Floats3 surface_force(const SurfaceForces& f, uint32_t i) {
+HWY_INLINE Floats3 surface_force(const SurfaceForces& f, Floats value, uint32_t i) {
   const FloatTag d;
   const Floats valence = load_valence(f.ring, i);
   const Floats3 around = record_sum(f.ring, f.laplacian, i, valence) * inverse_valence(valence);
   const FloatMask alive = hn::Gt(valence, hn::Zero(d));
   const Floats3 bent =
       where(alive, (load_packed(f.laplacian + i) - around) * hn::Set(d, f.curvature));
-  const Floats value = sample(f.image, load_packed(f.position + i));
   const Floats push = hn::Mul(hn::Set(d, f.attraction), hn::Sub(hn::Set(d, f.iso), value));
   return bent + load3(f.normal, i) * push;
 }
@@ -72,14 +71,27 @@ HWY_INLINE void prefetch_block(const SurfaceForces& f, const Rk4Streams& s, uint
   if (kStage != 0) prefetch3(s.rate, begin);
 }
 
-// visit(first vertex of the block) for every block.
+// visit(first vertex of the block, samples of the image at its vertices) for every block. Sampling
+// waits for memory; in a loop of its own over a few blocks more of it is under way at once.
 template <int kStage, class Visit>
 HWY_INLINE void visit_blocks(const SurfaceForces& f, const Rk4Streams& s, const Blocks& blocks,
                              const Visit& visit) {
-  for (size_t b = 0; b < blocks.count; ++b) {
-    if (b + kAhead < blocks.count) prefetch_block<kStage>(f, s, blocks.begin(b + kAhead));
-    if (b + 1 < blocks.count) prefetch_voxels(f, blocks.begin(b + 1));
-    visit(blocks.begin(b));
+  constexpr size_t kChunk = 8;
+  alignas(64) float values[kChunk * kRingLanes];
+  for (size_t first = 0; first < blocks.count; first += kChunk) {
+    const size_t end = HWY_MIN(first + kChunk, blocks.count);
+    for (size_t b = first; b < end; ++b) {
+      if (b + 1 < blocks.count) prefetch_voxels(f, blocks.begin(b + 1));
+      const uint32_t begin = blocks.begin(b);
+      for (uint32_t i = 0; i < kRingLanes; i += kLanes) {
+        hn::Store(sample(f.image, load_packed(f.position + begin + i)), FloatTag(),
+                  values + (b - first) * kRingLanes + i);
+      }
+    }
+    for (size_t b = first; b < end; ++b) {
+      if (b + kAhead < blocks.count) prefetch_block<kStage>(f, s, blocks.begin(b + kAhead));
+      visit(blocks.begin(b), values + (b - first) * kRingLanes);
+    }
   }
 }
 
@@ -87,14 +99,17 @@ template <int kStage>
 HWY_INLINE void stage_blocks(const Rk4Coefficients& coefficients, const SurfaceForces& forces,
                              const Rk4Streams& streams, const Blocks& blocks) {
   const Rk4Lanes<kStage> lanes(coefficients);
-  visit_blocks<kStage>(forces, streams, blocks, [&](uint32_t begin) HWY_ATTR {
+  visit_blocks<kStage>(forces, streams, blocks, [&](uint32_t begin, const float* values) HWY_ATTR {
     for (uint32_t i = begin; i < begin + kRingLanes; i += kLanes) {
       if constexpr (kStage == 3) {
-        const Arrival end = arrive(lanes, streams, surface_force(forces, i), i);
+        const Arrival end =
+            arrive(lanes, streams,
+                   surface_force(forces, hn::Load(FloatTag(), values + (i - begin)), i), i);
         store3(end.moved, streams.moved, i);
         store3(end.velocity, streams.rate, i);
       } else {
-        lanes.advance(streams, surface_force(forces, i), i);
+        lanes.advance(streams, surface_force(forces, hn::Load(FloatTag(), values + (i - begin)), i),
+                      i);
       }
     }
   });
@@ -119,11 +134,12 @@ Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& f
                      const Blocks& blocks) {
   const Rk4Lanes<3> lanes(coefficients);
   MoveLanes move(bound);
-  visit_blocks<3>(forces, streams, blocks, [&](uint32_t begin) HWY_ATTR {
+  visit_blocks<3>(forces, streams, blocks, [&](uint32_t begin, const float* values) HWY_ATTR {
     for (uint32_t part = 0; part < kRingLanes / kLanes; ++part) {
       const uint32_t i = begin + part * kLanes;
-      move.move(arrive(lanes, streams, surface_force(forces, i), i), streams.moved, ends, begin,
-                part);
+      move.move(arrive(lanes, streams,
+                       surface_force(forces, hn::Load(FloatTag(), values + (i - begin)), i), i),
+                streams.moved, ends, begin, part);
     }
   });
   return move.total();

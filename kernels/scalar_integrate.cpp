@@ -74,7 +74,7 @@ void advance_vertex(int stage, const Rk4Coefficients& c, const Rk4Streams& s, co
 }
 
 // (5) and (7).
-Triple surface_force(const SurfaceForces& f, uint32_t i) {
+Triple surface_force(const SurfaceForces& f, float value, uint32_t i) {
   Triple bent;
   if (f.ring.valence[i] != 0) {
     const Triple around =
@@ -82,10 +82,21 @@ Triple surface_force(const SurfaceForces& f, uint32_t i) {
     const Packed& own = f.laplacian[i];
     bent = times({own.x - around.x, own.y - around.y, own.z - around.z}, f.curvature);
   }
-  float value = 0;
-  sample_trilinear(f.image, f.position + i, 0, 1, &value);
   const Triple push = times(at(f.normal, i), f.attraction * (f.iso - value));
   return {bent.x + push.x, bent.y + push.y, bent.z + push.z};
+}
+
+// visit(vertex, its force) for every vertex of the blocks.
+template <typename Visit>
+void for_forces(const SurfaceForces& f, const Blocks& blocks, const Visit& visit) {
+  for (size_t b = 0; b < blocks.count; ++b) {
+    const uint32_t begin = blocks.begin(b);
+    float values[kRingLanes];
+    sample_trilinear(f.image, f.position + begin, 0, kRingLanes, values);
+    for (uint32_t l = 0; l < kRingLanes; ++l) {
+      visit(begin + l, surface_force(f, values[l], begin + l));
+    }
+  }
 }
 
 Triple shortened(const Triple& a, float longest) {
@@ -143,8 +154,8 @@ Movement move(const MoveBound& bound, const Float3s& moved, const ConstFloat3s& 
 
 void guided_stage(int stage, const Rk4Coefficients& coefficients, const SurfaceForces& forces,
                   const Rk4Streams& streams, const Blocks& blocks) {
-  for_vertices(blocks, [&](uint32_t i) {
-    advance_vertex(stage, coefficients, streams, surface_force(forces, i), i);
+  for_forces(forces, blocks, [&](uint32_t i, const Triple& force) {
+    advance_vertex(stage, coefficients, streams, force, i);
   });
 }
 
@@ -152,9 +163,9 @@ Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& f
                      const Rk4Streams& streams, const MoveBound& bound, const MoveStreams& ends,
                      const Blocks& blocks) {
   Sums sums;
-  for_vertices(blocks, [&](uint32_t i) {
+  for_forces(forces, blocks, [&](uint32_t i, const Triple& force) {
     Rk4State end;
-    rk4_vertex(3, coefficients, streams, surface_force(forces, i), i, end);
+    rk4_vertex(3, coefficients, streams, force, i, end);
     move_vertex(bound, end.moved, end.rate, streams.moved, ends, i, sums);
   });
   return {add_lanes(sums.lane), sums.longest};

@@ -133,9 +133,11 @@ class Buffer {
   static void advise_huge_pages([[maybe_unused]] void* data, [[maybe_unused]] size_t bytes) {
 #if defined(__linux__)
     if (data == nullptr) return;
-    const auto begin = (reinterpret_cast<uintptr_t>(data) + kHugePage - 1) / kHugePage * kHugePage;
-    const auto end = (reinterpret_cast<uintptr_t>(data) + bytes) / kHugePage * kHugePage;
-    if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+    const uintptr_t address = reinterpret_cast<uintptr_t>(data);
+    const size_t before = (kHugePage - address % kHugePage) % kHugePage;
+    if (bytes < before + kHugePage) return;
+    madvise(static_cast<char*>(data) + before, (bytes - before) / kHugePage * kHugePage,
+            MADV_HUGEPAGE);
 #endif
   }
 #endif
