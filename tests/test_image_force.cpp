@@ -51,7 +51,7 @@ double expected_sample(const ImageView& image, const Packed& p) {
       index[a] = cell[a] + up;
     }
     const int32_t at = index[0] + image.dims[0] * (index[1] + image.dims[1] * index[2]);
-    sum += weight * double{image.data[at]};
+    sum += weight * double{static_cast<const float*>(image.data)[at]};
   }
   return sum;
 }
