@@ -48,12 +48,13 @@ class InsideTest {
 
   // inside[i] = 1 where voxel i belongs to the object, else 0.
   void test(const Voxel* voxels, size_t count, uint8_t* inside) const {
+    const Voxel end = end_;  // bytes may be anything's, members too: a local lets loops be vectors
     if (none_) {
       std::fill_n(inside, count, uint8_t{0});
     } else if (above_) {
-      for (size_t i = 0; i < count; ++i) inside[i] = static_cast<uint8_t>(voxels[i] >= end_);
+      for (size_t i = 0; i < count; ++i) inside[i] = static_cast<uint8_t>(voxels[i] >= end);
     } else {
-      for (size_t i = 0; i < count; ++i) inside[i] = static_cast<uint8_t>(voxels[i] <= end_);
+      for (size_t i = 0; i < count; ++i) inside[i] = static_cast<uint8_t>(voxels[i] <= end);
     }
   }
 
@@ -159,12 +160,14 @@ class BoundaryHistogram {
   // differ[x] is not 0 where a voxel of the row has a neighbour on the other side.
   void compare(const uint8_t* row, const std::array<const uint8_t*, 4>& beside,
                uint8_t* differ) const {
-    for (size_t x = 0; x < width_; ++x) {
-      differ[x] = static_cast<uint8_t>((row[x] ^ beside[0][x]) | (row[x] ^ beside[1][x]) |
-                                       (row[x] ^ beside[2][x]) | (row[x] ^ beside[3][x]));
+    const size_t width = width_;
+    const auto [a, b, c, d] = beside;
+    for (size_t x = 0; x < width; ++x) {
+      differ[x] = static_cast<uint8_t>((row[x] ^ a[x]) | (row[x] ^ b[x]) | (row[x] ^ c[x]) |
+                                       (row[x] ^ d[x]));
     }
-    for (size_t x = 1; x < width_; ++x) differ[x] |= row[x] ^ row[x - 1];
-    for (size_t x = 1; x < width_; ++x) differ[x - 1] |= row[x] ^ row[x - 1];
+    for (size_t x = 1; x < width; ++x) differ[x] |= row[x] ^ row[x - 1];
+    for (size_t x = 1; x < width; ++x) differ[x - 1] |= row[x] ^ row[x - 1];
   }
 
   template <typename Voxel>

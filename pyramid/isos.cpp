@@ -75,8 +75,9 @@ class SeenRows {
     const float* row =
         cells_.level.values.data() + (static_cast<size_t>(z) * rows_ + static_cast<size_t>(y)) *
                                          static_cast<size_t>(cells_.level.dims[0]);
-    for (size_t x = 0; x < width_; ++x) {
-      const AxisCell at = cells_.axis[0][x];
+    const AxisCell* cells = cells_.axis[0].data();
+    for (size_t x = 0, width = width_; x < width; ++x) {
+      const AxisCell at = cells[x];
       const float* cell = row + at.index;
       to[x] = cell[0] + (cell[1] - cell[0]) * at.fraction;
     }
@@ -95,8 +96,13 @@ size_t list_object(const std::vector<float>& row, float iso, bool above,
                    std::vector<uint8_t>& inside, std::vector<uint32_t>& places) {
   constexpr size_t kWord = sizeof(uint64_t);
   const size_t width = row.size();
-  for (size_t x = 0; x < width; ++x) {
-    inside[x] = static_cast<uint8_t>(above ? row[x] >= iso : row[x] <= iso);
+  // Bytes may be anything's: behind plain pointers the loops can be vectors.
+  const float* value = row.data();
+  uint8_t* side = inside.data();
+  if (above) {
+    for (size_t x = 0; x < width; ++x) side[x] = static_cast<uint8_t>(value[x] >= iso);
+  } else {
+    for (size_t x = 0; x < width; ++x) side[x] = static_cast<uint8_t>(value[x] <= iso);
   }
   uint32_t* to = places.data();
   for (size_t x = 0; x < inside.size(); x += kWord) {
@@ -164,8 +170,10 @@ class ObjectHistograms {
         for (size_t l = 0; l < levels.size(); ++l) {
           levels[l].read(simd_, y, z, places[0], places[found - 1] + 1, seen.data());
           uint32_t* to = bins.data() + l * kBins;
+          const float* value = seen.data();
+          const uint32_t* place = places.data();
           for (size_t i = 0; i < found; ++i) {
-            const auto bin = static_cast<int32_t>(seen[places[i]] * static_cast<float>(kBins));
+            const auto bin = static_cast<int32_t>(value[place[i]] * static_cast<float>(kBins));
             ++to[std::min(bin, static_cast<int32_t>(kBins) - 1)];
           }
         }
