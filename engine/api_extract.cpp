@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "engine/api_extras.h"
 #include "engine/api_force.h"
@@ -82,8 +83,8 @@ class Extraction {
     if (extras_.level != nullptr) {
       hooks.level = [&](const LevelRecord&) { return ask_user(); };
     }
-    Status s = pyramidal_recover_shape(pyramid_, spec_, context_.schedule, context_.simd, hooks,
-                                       surface_->mesh, surface_->records);
+    Status s = pyramidal_recover_shape(std::move(images_), spec_, context_.schedule, context_.simd,
+                                       hooks, surface_->mesh, surface_->records);
     surface_->seconds_evolution = now() - start;
     if (s.ok()) surface_->space = space_of_last_level();
     return s;
@@ -111,19 +112,18 @@ class Extraction {
     }
   }
 
-  // Everything up to the evolution.
+  // Everything up to the evolution. The caller's voxels are borrowed throughout.
   Status build() {
     const double start = now();
     plc_parameters& p = surface_->parameters;
-    Buffer<float> feature;
     if (p.feature == PLC_FEATURE_GRADIENT_NORM) {
       if (Status s =
-              gradient_norm(volume_, p.feature_sigma, context_.schedule, context_.simd, feature);
+              gradient_norm(volume_, p.feature_sigma, context_.schedule, context_.simd, feature_);
           !s.ok()) {
         return s;
       }
       volume_.type = VoxelType::kF32;
-      volume_.voxels = feature.data();
+      volume_.voxels = feature_.data();
     }
     surface_->range = voxel_range(volume_, context_.schedule, context_.simd);
     if (surface_->range.not_finite > 0) {
@@ -135,11 +135,14 @@ class Extraction {
         !s.ok()) {
       return s;
     }
+    const double images_start = now();
     if (Status s =
-            build_pyramid(volume_, pyramid_spec(p), context_.schedule, context_.simd, pyramid_);
+            build_pyramid(volume_, pyramid_spec(p), context_.schedule, context_.simd, images_);
         !s.ok()) {
       return s;
     }
+    surface_->seconds_images = now() - images_start;
+    pyramid_ = without_values(images_);
     spec_ = recovery_spec(p);
     take_extras(extras_, surface_->frame, spec_);
     spec_.force = level_force(extras_, surface_->frame, context_.schedule);
@@ -153,13 +156,16 @@ class Extraction {
   Status build_mask_pyramid() {
     const plc_parameters& p = surface_->parameters;
     if (p.init != PLC_INIT_MASK) return {};
-    Buffer<uint8_t> object;
-    if (!set_voxels(view_of(*extras_.mask), context_.schedule, object)) {
+    VolumeView volume = view_of(*extras_.mask);
+    if (!is_any_set(volume, context_.schedule)) {
       return {ErrorCode::kInvalidData, "mask: every voxel is 0"};
     }
-    VolumeView volume = view_of(*extras_.mask);
-    volume.type = VoxelType::kU8;
-    volume.voxels = object.data();
+    // Clipped at 1, voxels without a sign are 0 or 1 as they are.
+    if (volume.type != VoxelType::kU8 && volume.type != VoxelType::kU16) {
+      set_voxels(volume, context_.schedule, mask_);
+      volume.type = VoxelType::kU8;
+      volume.voxels = mask_.data();
+    }
     volume.spacing = volume_.spacing;
     PyramidSpec spec = pyramid_spec(p);
     spec.window_low = 0;
@@ -168,21 +174,31 @@ class Extraction {
     return build_pyramid(volume, spec, context_.schedule, context_.simd, spec_.start.mask);
   }
 
+  // On I_0, a voxel of just this value is at it; strictly inside the window, as `value` is.
+  double base_iso(double value) const {
+    const PyramidSpec spec = pyramid_spec(surface_->parameters);
+    const double iso = static_cast<double>(base_value(volume_, spec, value));
+    return iso > 0 && iso < 1 ? iso : normalised(surface_->parameters, value);
+  }
+
   void choose_isos(double background) {
     plc_parameters& p = surface_->parameters;
     const bool above = p.inside_below == 0;
     if (std::isnan(p.iso)) {
       spec_.isos.assign(pyramid_.levels.size(), NAN);
     } else if (p.level_iso_count == 0) {
-      spec_.isos = covering_isos(pyramid_, normalised(p, p.iso), above,
-                                 level_iso_bound(p, background), context_.schedule, context_.simd);
+      const double iso = base_iso(p.iso);
+      spec_.isos = covering_isos(images_, iso, above, level_iso_bound(p, background),
+                                 context_.schedule, context_.simd);
+      p.level_iso[0] = p.iso;
+      for (size_t h = 1; h < spec_.isos.size(); ++h) {
+        p.level_iso[h] = denormalised(p, spec_.isos[h]);
+      }
     } else {
-      for (int h = 0; h <= p.levels; ++h) spec_.isos.push_back(normalised(p, p.level_iso[h]));
+      spec_.isos.push_back(base_iso(p.level_iso[0]));
+      for (int h = 1; h <= p.levels; ++h) spec_.isos.push_back(normalised(p, p.level_iso[h]));
     }
     p.level_iso_count = std::isnan(p.iso) ? 0 : p.levels + 1;
-    for (size_t h = 0; h < spec_.isos.size(); ++h) {
-      p.level_iso[h] = denormalised(p, spec_.isos[h]);
-    }
     for (size_t h = pyramid_.levels.size(); h-- > 0;) {
       surface_->level_dims.push_back(pyramid_.levels[h].dims);
       surface_->level_units.push_back(pyramid_.levels[h].unit);
@@ -194,7 +210,10 @@ class Extraction {
   const plc_extras& extras_;
   std::unique_ptr<plc_surface> surface_;
   VolumeView volume_;
-  Pyramid pyramid_;
+  Buffer<float> feature_;  // what volume_ then is
+  Buffer<uint8_t> mask_;   // what spec_.start.mask may borrow
+  Pyramid images_;         // until the evolution takes it
+  Pyramid pyramid_;        // without values
   RecoverySpec spec_;
 };
 

@@ -122,6 +122,10 @@ plc_status plc_surface_level(const plc_surface* surface, int index, plc_level_re
   return PLC_OK;
 }
 
+double plc_surface_image_seconds(const plc_surface* surface) {
+  return surface->seconds_images;
+}
+
 void plc_surface_seconds(const plc_surface* surface, double* pyramid, double* evolution) {
   *pyramid = surface->seconds_pyramid;
   *evolution = surface->seconds_evolution;

@@ -9,6 +9,7 @@
 
 #include "engine/blocks.h"
 #include "engine/face_rings.h"
+#include "kernels/image_value.h"
 
 namespace plc {
 
@@ -31,8 +32,8 @@ using Face = std::array<uint32_t, 3>;
 // The lattice: the voxels, and one point more on every side that is outside.
 class Lattice {
  public:
-  Lattice(const ImageView& image, float iso, bool inside_above)
-      : image_(image), iso_(iso), above_(inside_above) {
+  Lattice(const ImageView& image, const LatticeValues& values, float iso, bool inside_above)
+      : image_(image), values_(values), iso_(iso), above_(inside_above) {
     for (size_t a = 0; a < 3; ++a) size_[a] = static_cast<size_t>(image.dims[a]) + 2;
   }
 
@@ -46,8 +47,9 @@ class Lattice {
   void classify(size_t z, std::vector<uint8_t>& inside) const {
     inside.assign(slice_points(), 0);
     if (z == 0 || z + 1 >= size_[2]) return;
+    std::vector<float> row(size_[0]);
     for (size_t y = 1; y + 1 < size_[1]; ++y) {
-      const float* row = image_.data + voxel(1, y, z);
+      values_.row(voxel(y), voxel(z), row.data());
       uint8_t* to = inside.data() + point(1, y);
       for (size_t x = 0; x + 2 < size_[0]; ++x) {
         to[x] = static_cast<uint8_t>(above_ ? row[x] >= iso_ : row[x] <= iso_);
@@ -61,8 +63,8 @@ class Lattice {
     const std::array<size_t, 3> to{x + (d & 1), y + (d >> 1 & 1), z + (d >> 2 & 1)};
     double t = 0.5;  // beyond the border there is no value to go by
     if (is_voxel(from) && is_voxel(to)) {
-      const double a = image_.data[voxel(from[0], from[1], from[2])];
-      const double b = image_.data[voxel(to[0], to[1], to[2])];
+      const double a = values_.at(voxel(from[0]), voxel(from[1]), voxel(from[2]));
+      const double b = values_.at(voxel(to[0]), voxel(to[1]), voxel(to[2]));
       t = (static_cast<double>(iso_) - a) / (b - a);
       t = t > kIsoMargin ? std::min(t, 1 - kIsoMargin) : kIsoMargin;  // a NaN is put at the margin
     }
@@ -80,13 +82,10 @@ class Lattice {
     return p[0] != 0 && p[1] != 0 && p[2] != 0 && p[0] + 1 != size_[0] && p[1] + 1 != size_[1] &&
            p[2] + 1 != size_[2];
   }
-  size_t voxel(size_t x, size_t y, size_t z) const {
-    const auto width = static_cast<size_t>(image_.dims[0]);
-    const auto height = static_cast<size_t>(image_.dims[1]);
-    return ((z - 1) * height + y - 1) * width + x - 1;
-  }
+  static int32_t voxel(size_t point) { return static_cast<int32_t>(point) - 1; }
 
   const ImageView& image_;
+  const LatticeValues& values_;
   float iso_;
   bool above_;
   std::array<size_t, 3> size_{};
@@ -121,8 +120,9 @@ struct EdgeIds {
 
 class Builder {
  public:
-  Builder(const ImageView& image, float iso, bool inside_above, const Executor& executor)
-      : lattice_(image, iso, inside_above),
+  Builder(const ImageView& image, const LatticeValues& values, float iso, bool inside_above,
+          const Executor& executor)
+      : lattice_(image, values, iso, inside_above),
         executor_(executor),
         layers_(lattice_.slices() - 1),
         first_id_(layers_ + 1, 0) {}
@@ -265,12 +265,20 @@ class Builder {
 
 }  // namespace
 
-Status iso_surface(const ImageView& image, float iso, bool inside_above, const Executor& executor,
-                   Mesh& mesh) {
-  Builder builder(image, iso, inside_above, executor);
+Status iso_surface(const ImageView& image, const LatticeValues& values, float iso,
+                   bool inside_above, const Executor& executor, Mesh& mesh) {
+  Builder builder(image, values, iso, inside_above, executor);
   if (Status s = builder.count(); !s.ok()) return s;
   builder.build(mesh);
   return {};
+}
+
+Status iso_surface(const ImageView& image, float iso, bool inside_above, const Executor& executor,
+                   Mesh& mesh) {
+  const LatticeValues values{
+      [&](int32_t y, int32_t z, float* row) { image_row(image, y, z, row); },
+      [&](int32_t x, int32_t y, int32_t z) { return image_value(image, x, y, z); }};
+  return iso_surface(image, values, iso, inside_above, executor, mesh);
 }
 
 }  // namespace plc

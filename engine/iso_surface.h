@@ -5,6 +5,9 @@
 // closed and a manifold whatever the voxels are. Marching cubes needs a table of ambiguous cases
 // for that.
 #pragma once
+#include <cstdint>
+#include <functional>
+
 #include "engine/mesh.h"
 #include "kernels/image.h"
 #include "pyramid/executor.h"
@@ -29,5 +32,15 @@ inline constexpr double kIsoMargin = 0.1;
 // vertices than ids have room for; throws std::bad_alloc.
 Status iso_surface(const ImageView& image, float iso, bool inside_above, const Executor& executor,
                    Mesh& mesh);
+
+// Values that are computed as they are asked for, by any thread: x fastest, as an image's.
+struct LatticeValues {
+  std::function<void(int32_t y, int32_t z, float* values)> row;
+  std::function<float(int32_t x, int32_t y, int32_t z)> at;  // the same values
+};
+
+// The same of such values; of `image` dims, scale and offset are read alone.
+Status iso_surface(const ImageView& image, const LatticeValues& values, float iso,
+                   bool inside_above, const Executor& executor, Mesh& mesh);
 
 }  // namespace plc

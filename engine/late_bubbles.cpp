@@ -11,54 +11,75 @@
 #include "engine/measures.h"
 #include "engine/mesh_append.h"
 #include "engine/missed_places.h"
+#include "kernels/image_value.h"
 
 namespace plc {
 
 namespace {
 
 // The part of the image around the places of one kind, with everything else turned to the other
-// side of iso.
+// side of iso. Its values are made as they are asked for: it may be as large as the image.
 class Cutout {
  public:
-  Cutout(const ImageView& image, float iso, bool above, const MissedPlaces& places, Missed kind) {
+  Cutout(const ImageView& image, float iso, bool above, const MissedPlaces& places, Missed kind)
+      : image_(image),
+        iso_(iso),
+        up_(above == (kind == Missed::kPart)),
+        voxels_(places.voxels[static_cast<size_t>(kind)]),
+        view_(image) {
     const auto k = static_cast<size_t>(kind);
-    const auto& low = places.low[k];
-    view_ = image;
     for (size_t a = 0; a < 3; ++a) {
       // The places end a voxel from the border of the cutout: what is beyond is outside.
-      view_.dims[a] = places.high[k][a] - low[a] + 3;
-      view_.offset[a] = image.offset[a] - static_cast<float>(low[a] - 1);
+      first_[a] = places.low[k][a] - 1;
+      view_.dims[a] = places.high[k][a] - first_[a] + 2;
+      view_.offset[a] = image.offset[a] - static_cast<float>(first_[a]);
     }
-    values_.resize(static_cast<size_t>(view_.dims[0]) * static_cast<size_t>(view_.dims[1]) *
-                   static_cast<size_t>(view_.dims[2]));
-    size_t to = 0;
-    for (int32_t z = low[2] - 1; z < low[2] - 1 + view_.dims[2]; ++z) {
-      for (int32_t y = low[1] - 1; y < low[1] - 1 + view_.dims[1]; ++y) {
-        for (int32_t x = low[0] - 1; x < low[0] - 1 + view_.dims[0]; ++x) {
-          values_[to++] = value({x, y, z}, image, iso, above, places, kind);
-        }
-      }
-    }
-    view_.data = values_.data();
   }
-  const ImageView& view() const { return view_; }
+  const ImageView& view() const { return view_; }  // dims, scale and offset
+  LatticeValues values() const {
+    return {[this](int32_t y, int32_t z, float* row) { read_row(y, z, row); },
+            [this](int32_t x, int32_t y, int32_t z) { return value(x, y, z); }};
+  }
 
  private:
-  // How far a voxel lies on the object's side of iso, for parts; on the other, for cavities.
-  static float value(const std::array<int32_t, 3>& v, const ImageView& image, float iso, bool above,
-                     const MissedPlaces& places, Missed kind) {
-    for (size_t a = 0; a < 3; ++a) {
-      if (v[a] < 0 || v[a] >= image.dims[a]) return -1;
-    }
-    const size_t i = voxel_index(image, v);
-    const bool up = above == (kind == Missed::kPart);
-    const float depth = up ? image.data[i] - iso : iso - image.data[i];
-    return places.is(i, kind) ? std::max(depth, 0.0F) : -std::max(std::abs(depth), kLeast);
+  static constexpr float kLeast = 1e-6F;
+
+  // How far a value lies on the object's side of iso, for parts; on the other, for cavities.
+  float depth(float value) const { return up_ ? value - iso_ : iso_ - value; }
+  static float outside(float depth) { return -std::max(std::abs(depth), kLeast); }
+  static float inside(float depth) { return std::max(depth, 0.0F); }
+
+  bool in_image(const Voxel& v) const {
+    return v[0] >= 0 && v[1] >= 0 && v[2] >= 0 && v[0] < image_.dims[0] && v[1] < image_.dims[1] &&
+           v[2] < image_.dims[2];
+  }
+  float value(int32_t x, int32_t y, int32_t z) const {
+    const Voxel v{x + first_[0], y + first_[1], z + first_[2]};
+    if (!in_image(v)) return -1;
+    const float d = depth(image_value(image_, v[0], v[1], v[2]));
+    return voxels_.has(v) ? inside(d) : outside(d);
+  }
+  void read_row(int32_t y, int32_t z, float* values) const {
+    const int32_t width = view_.dims[0];
+    const int32_t row = y + first_[1], plane = z + first_[2];
+    std::fill_n(values, width, -1.0F);
+    if (!in_image({0, row, plane})) return;
+    const int32_t begin = std::max(first_[0], 0);
+    const int32_t end = std::min(first_[0] + width, image_.dims[0]);
+    std::vector<float> own(static_cast<size_t>(image_.dims[0]));
+    image_row(image_, row, plane, own.data());
+    const auto to = [&](int32_t x) -> float& { return values[x - first_[0]]; };
+    for (int32_t x = begin; x < end; ++x) to(x) = outside(depth(own[static_cast<size_t>(x)]));
+    voxels_.visit_row(row, plane, begin, end,
+                      [&](int32_t x) { to(x) = inside(depth(own[static_cast<size_t>(x)])); });
   }
 
-  static constexpr float kLeast = 1e-6F;
+  const ImageView& image_;
+  float iso_;
+  bool up_;  // whether larger values lie inside
+  const VoxelSet& voxels_;
+  Voxel first_{};
   ImageView view_;
-  std::vector<float> values_;
 };
 
 double volume_of(const Mesh& mesh, const Executor& executor) {
@@ -75,8 +96,8 @@ double volume_of(const Mesh& mesh, const Executor& executor) {
 }  // namespace
 
 Status start_late_bubbles(const ImageView& image, float iso, bool inside_above,
-                          const Schedule& schedule, SimdTarget simd, Mesh& mesh,
-                          Buffer<uint8_t>& tried, LateBubbles& started, OperationCounts& counts) {
+                          const Schedule& schedule, SimdTarget simd, Mesh& mesh, VoxelSet& tried,
+                          LateBubbles& started, OperationCounts& counts) {
   const auto delta = static_cast<float>(mesh.delta);
   // A vertex of an iso-surface lies at most 0.9 of a voxel's diagonal from a voxel of the place.
   float diagonal = 0;
@@ -89,7 +110,9 @@ Status start_late_bubbles(const ImageView& image, float iso, bool inside_above,
     if (count == 0) continue;
     const Cutout cutout(image, iso, inside_above, places, kind);
     Mesh part;
-    if (Status s = iso_surface(cutout.view(), 0, true, schedule, part); !s.ok()) return s;
+    if (Status s = iso_surface(cutout.view(), cutout.values(), 0, true, schedule, part); !s.ok()) {
+      return s;
+    }
     Status s = conform(part, mesh.delta, schedule, simd, counts);
     if (s.code() == ErrorCode::kInvalidData) continue;  // nothing is left of it
     if (!s.ok()) return s;

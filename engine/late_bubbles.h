@@ -6,9 +6,9 @@
 #include "engine/mesh.h"
 #include "engine/schedule.h"
 #include "engine/statistics.h"
+#include "engine/voxel_set.h"
 #include "kernels/image.h"
 #include "kernels/simd.h"
-#include "pyramid/buffer.h"
 #include "pyramid/status.h"
 
 namespace plc {
@@ -25,11 +25,12 @@ struct LateBubbles {
 // rest from there. Spheres do not do: in a thin or faint part the curvature of one that fits holds
 // it down, and it never fills the part. Bubbles around a cavity face inward.
 //
-// `tried`: one byte per voxel, or empty; places with a mark are left out, what is started gets one.
-// The surface stays embedded. `started` and `counts` grow. The same bits for any number of threads.
-// Errors: those of conform.h, but for parts of which nothing is left.
+// `tried`: of the image's voxels, or of none yet; places with a voxel in it are left out, what is
+// started is put in. Nothing of the image's size is allocated: sets of voxels are held where they
+// are. The surface stays embedded. `started` and `counts` grow. The same bits for any number of
+// threads. Errors: those of conform.h, but for parts of which nothing is left.
 Status start_late_bubbles(const ImageView& image, float iso, bool inside_above,
-                          const Schedule& schedule, SimdTarget simd, Mesh& mesh,
-                          Buffer<uint8_t>& tried, LateBubbles& started, OperationCounts& counts);
+                          const Schedule& schedule, SimdTarget simd, Mesh& mesh, VoxelSet& tried,
+                          LateBubbles& started, OperationCounts& counts);
 
 }  // namespace plc

@@ -10,6 +10,7 @@
 #include "engine/initial_surface.h"
 #include "engine/iso_surface.h"
 #include "engine/mesh_import.h"
+#include "kernels/image_value.h"
 
 namespace plc {
 
@@ -23,24 +24,45 @@ ImageView view_of(const LevelImage& level, const Pyramid& pyramid) {
   return image_view(pyramid, level.h, level.pad, level.space);
 }
 
+struct VoxelBox {
+  std::array<int64_t, 3> low, high;  // low > high where it is empty
+};
+
+// Grows the box by the voxels of slice z on the object's side of iso.
+void add_slice(const LevelImage& level, int64_t z, VoxelBox& box) {
+  const ImageView image = level_image(image_of(level));
+  std::vector<float> row(static_cast<size_t>(image.dims[0]));
+  const auto is_object = [&](float v) {
+    return level.inside_above ? v >= level.iso : v <= level.iso;
+  };
+  for (int64_t y = 0; y < image.dims[1]; ++y) {
+    image_row(image, y, z, row.data());
+    const auto first = std::find_if(row.begin(), row.end(), is_object);
+    if (first == row.end()) continue;
+    const auto last = std::find_if(row.rbegin(), row.rend(), is_object);
+    const std::array<int64_t, 3> low{first - row.begin(), y, z};
+    const std::array<int64_t, 3> high{row.rend() - last - 1, y, z};
+    for (size_t a = 0; a < 3; ++a) {
+      box.low[a] = std::min(box.low[a], low[a]);
+      box.high[a] = std::max(box.high[a], high[a]);
+    }
+  }
+}
+
 // The box of mesh space that the part of the image on the object's side of iso fills; false when it
 // is empty.
-bool object_extent(const LevelImage& level, Extent& box) {
+bool object_extent(const LevelImage& level, const Executor& executor, Extent& box) {
   const PyramidLevel& image = image_of(level);
+  std::vector<VoxelBox> slices(static_cast<size_t>(image.dims[2]),
+                               VoxelBox{image.dims, {-1, -1, -1}});
+  executor.run(slices.size(),
+               [&](size_t z) { add_slice(level, static_cast<int64_t>(z), slices[z]); });
   std::array<int64_t, 3> low = image.dims;
   std::array<int64_t, 3> high{-1, -1, -1};
-  size_t i = 0;
-  for (int64_t z = 0; z < image.dims[2]; ++z) {
-    for (int64_t y = 0; y < image.dims[1]; ++y) {
-      for (int64_t x = 0; x < image.dims[0]; ++x, ++i) {
-        if (level.inside_above ? image.values[i] < level.iso : image.values[i] > level.iso)
-          continue;
-        const std::array<int64_t, 3> at{x, y, z};
-        for (size_t a = 0; a < 3; ++a) {
-          low[a] = std::min(low[a], at[a]);
-          high[a] = std::max(high[a], at[a]);
-        }
-      }
+  for (const VoxelBox& slice : slices) {
+    for (size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], slice.low[a]);
+      high[a] = std::max(high[a], slice.high[a]);
     }
   }
   const ImageView view = view_of(level, level.pyramid);
@@ -150,7 +172,7 @@ Status start_surface(const StartSpec& spec, const LevelImage& level, double delt
   switch (spec.init) {
     case Init::kBubble:
       if (std::isnan(level.iso)) box = image_extent(level);
-      if (std::isnan(level.iso) || object_extent(level, box))
+      if (std::isnan(level.iso) || object_extent(level, schedule, box))
         make_bubble(mesh, box, delta, schedule);
       return {};
     case Init::kBubbles:

@@ -35,11 +35,9 @@ void change_space(Mesh& mesh, const MeshSpace& from, const MeshSpace& to) {
 // voxels from the border: (10).
 ImageView image_view(const Pyramid& pyramid, int h, int pad, const MeshSpace& space) {
   const PyramidLevel& level = pyramid.levels[static_cast<size_t>(h)];
-  ImageView view;
-  view.data = level.values.data();
+  ImageView view = level_image(level);
   for (size_t a = 0; a < 3; ++a) {
     const double voxels_per_voxel = pyramid.levels[0].voxel[a] / level.voxel[a];
-    view.dims[a] = static_cast<int32_t>(level.dims[a]);
     view.scale[a] = static_cast<float>(voxels_per_voxel / space.step[a]);
     view.offset[a] = static_cast<float>((pad + 0.5) * voxels_per_voxel - 0.5);
   }

@@ -2,20 +2,68 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <utility>
+#include <vector>
 
 #include "engine/voxel_sides.h"
+#include "kernels/image_value.h"
 
 namespace plc {
 
 namespace {
 
-constexpr uint8_t kNone = 0;
+using Sets = std::array<VoxelSet, 2>;  // by Missed
 
-using Voxel = std::array<int32_t, 3>;
+// The voxels on which the image and the surface disagree.
+class Disagreement {
+ public:
+  Disagreement(const Mesh& mesh, const ImageView& image, float iso, bool above)
+      : image_(image), iso_(iso), above_(above), sides_(mesh, image) {}
+
+  void add(int32_t z, Sets& missed) const {
+    constexpr size_t kWord = sizeof(uint64_t);
+    const auto width = static_cast<size_t>(image_.dims[0]);
+    std::vector<float> values(width);
+    std::vector<uint8_t> inside(width), differ((width + kWord - 1) / kWord * kWord, 0);
+    for (int32_t y = 0; y < image_.dims[1]; ++y) {
+      sides_.row(y, z, inside.data());
+      image_row(image_, y, z, values.data());
+      if (above_) {
+        for (size_t x = 0; x < width; ++x) differ[x] = inside[x] ^ uint8_t { values[x] >= iso_ };
+      } else {
+        for (size_t x = 0; x < width; ++x) differ[x] = inside[x] ^ uint8_t { values[x] <= iso_ };
+      }
+      for (size_t x = 0; x < width; x += kWord) {
+        uint64_t word = 0;
+        std::memcpy(&word, differ.data() + x, kWord);
+        if (word == 0) continue;
+        for (size_t i = x; i < x + kWord; ++i) {
+          if (differ[i] == 0) continue;
+          const Missed kind = inside[i] != 0 ? Missed::kCavity : Missed::kPart;
+          missed[static_cast<size_t>(kind)].insert({static_cast<int32_t>(i), y, z});
+        }
+      }
+    }
+  }
+
+ private:
+  const ImageView& image_;
+  float iso_;
+  bool above_;
+  VoxelSides sides_;
+};
+
+// What a place was found to be.
+struct Place {
+  bool holds = false;  // a ball
+  bool tried = false;
+  Voxel low, high;
+};
 
 class Search {
  public:
-  Search(const ImageView& image, MissedPlaces& places) : image_(image), kind_(places.kind) {
+  Search(const ImageView& image, Sets& missed) : image_(image), missed_(missed) {
     for (size_t a = 0; a < 3; ++a) length_[a] = 1 / image.scale[a];
   }
 
@@ -35,41 +83,10 @@ class Search {
       }
       for (int32_t z = low[2]; z <= high[2]; ++z) {
         for (int32_t y = low[1]; y <= high[1]; ++y) {
-          for (int32_t x = low[0]; x <= high[0]; ++x) {
-            const float dx = (static_cast<float>(x) - centre[0]) * length_[0];
-            const float dy = (static_cast<float>(y) - centre[1]) * length_[1];
-            const float dz = (static_cast<float>(z) - centre[2]) * length_[2];
-            if (dx * dx + dy * dy + dz * dz < clearance * clearance)
-              kind_[index({x, y, z})] = kNone;
-          }
+          clear_row(centre, clearance, y, z, low[0], high[0]);
         }
       }
     }
-  }
-
-  // The set of the seed, taken out of `left`; whether one of its voxels is the middle of a ball, or
-  // the corner of one between voxels.
-  bool flood(size_t seed, std::vector<uint8_t>& left, std::vector<uint32_t>& set) const {
-    set.assign(1, static_cast<uint32_t>(seed));
-    left[seed] = 0;
-    bool holds = false;
-    for (size_t i = 0; i < set.size(); ++i) {
-      const Voxel at = voxel(set[i]);
-      holds = holds || free(at, around_) || free(at, between_);
-      for (int32_t z = -1; z <= 1; ++z) {
-        for (int32_t y = -1; y <= 1; ++y) {
-          for (int32_t x = -1; x <= 1; ++x) {
-            const Voxel next{at[0] + x, at[1] + y, at[2] + z};
-            if (!within(next)) continue;
-            const size_t n = index(next);
-            if (left[n] == 0 || kind_[n] != kind_[seed]) continue;
-            left[n] = 0;
-            set.push_back(static_cast<uint32_t>(n));
-          }
-        }
-      }
-    }
-    return holds;
   }
 
   // The voxels whose boxes a ball touches, about a voxel's centre and about a corner of voxels.
@@ -89,15 +106,76 @@ class Search {
     }
   }
 
-  Voxel voxel(uint32_t i) const {
-    const auto row = static_cast<uint32_t>(image_.dims[0]);
-    const auto rows = static_cast<uint32_t>(image_.dims[1]);
-    return {static_cast<int32_t>(i % row), static_cast<int32_t>(i / row % rows),
-            static_cast<int32_t>(i / row / rows)};
+  // The place of the seed, taken out of `left`.
+  Place examine(const Voxel& seed, const VoxelSet& kind, const VoxelSet& tried, VoxelSet& left) {
+    Place place;
+    place.low = place.high = seed;
+    left.erase(seed);
+    flood(
+        seed,
+        [&](const Voxel& v) {
+          place.tried = place.tried || tried.has(v);
+          place.holds = place.holds || free(v, kind, around_) || free(v, kind, between_);
+          for (size_t a = 0; a < 3; ++a) {
+            place.low[a] = std::min(place.low[a], v[a]);
+            place.high[a] = std::max(place.high[a], v[a]);
+          }
+        },
+        [&](const Voxel& v) {
+          const bool found = left.has(v);
+          if (found) left.erase(v);
+          return found;
+        });
+    return place;
+  }
+
+  // Puts the place of the seed into both sets.
+  void keep(const Voxel& seed, const VoxelSet& kind, VoxelSet& kept, VoxelSet& tried) {
+    kept.insert(seed);
+    flood(
+        seed, [&](const Voxel& v) { tried.insert(v); },
+        [&](const Voxel& v) {
+          const bool found = kind.has(v) && !kept.has(v);
+          if (found) kept.insert(v);
+          return found;
+        });
   }
 
  private:
-  size_t index(const Voxel& v) const { return voxel_index(image_, v); }
+  void clear_row(const std::array<float, 3>& centre, float clearance, int32_t y, int32_t z,
+                 int32_t low, int32_t high) {
+    for (VoxelSet& set : missed_) {
+      set.visit_row(y, z, low, high + 1, [&](int32_t x) {
+        const float dx = (static_cast<float>(x) - centre[0]) * length_[0];
+        const float dy = (static_cast<float>(y) - centre[1]) * length_[1];
+        const float dz = (static_cast<float>(z) - centre[2]) * length_[2];
+        if (dx * dx + dy * dy + dz * dz < clearance * clearance) set.erase({x, y, z});
+      });
+    }
+  }
+
+  // visit(voxel) for the seed and what is connected to it; take(voxel) tells whether a neighbour is
+  // of the place and new. Only the front is kept in memory.
+  template <typename Visit, typename Take>
+  void flood(const Voxel& seed, const Visit& visit, const Take& take) {
+    front_.assign(1, seed);
+    while (!front_.empty()) {
+      next_.clear();
+      for (const Voxel& at : front_) {
+        visit(at);
+        for (int32_t z = -1; z <= 1; ++z) {
+          for (int32_t y = -1; y <= 1; ++y) {
+            for (int32_t x = -1; x <= 1; ++x) {
+              const Voxel v{at[0] + x, at[1] + y, at[2] + z};
+              if (within(v) && take(v)) next_.push_back(v);
+            }
+          }
+        }
+      }
+      front_.swap(next_);
+    }
+  }
+
   bool within(const Voxel& v) const {
     for (size_t a = 0; a < 3; ++a) {
       if (v[a] < 0 || v[a] >= image_.dims[a]) return false;
@@ -115,71 +193,52 @@ class Search {
     return std::sqrt(squared);
   }
 
-  bool free(const Voxel& at, const std::vector<Voxel>& ball) const {
-    const uint8_t own = kind_[index(at)];
+  bool free(const Voxel& at, const VoxelSet& kind, const std::vector<Voxel>& ball) const {
     return std::all_of(ball.begin(), ball.end(), [&](const Voxel& o) {
       const Voxel v{at[0] + o[0], at[1] + o[1], at[2] + o[2]};
-      return within(v) && kind_[index(v)] == own;
+      return within(v) && kind.has(v);
     });
   }
 
   const ImageView& image_;
-  Buffer<uint8_t>& kind_;
+  Sets& missed_;
   std::array<float, 3> length_{};  // of a voxel, mesh units
   std::vector<Voxel> around_, between_;
+  std::vector<Voxel> front_, next_;
 };
 
 }  // namespace
 
 MissedPlaces find_missed_places(const Mesh& mesh, const ImageView& image, float iso,
                                 bool inside_above, float clearance, float radius,
-                                const Executor& executor, Buffer<uint8_t>& tried) {
-  MissedPlaces places;
-  voxel_sides(mesh, image, executor, places.kind);
-  const size_t voxels = places.kind.size();
-  const auto slice = static_cast<size_t>(image.dims[0]) * static_cast<size_t>(image.dims[1]);
-  executor.run(static_cast<size_t>(image.dims[2]), [&](size_t z) {
-    for (size_t i = z * slice; i < (z + 1) * slice; ++i) {
-      const bool object = inside_above ? image.data[i] >= iso : image.data[i] <= iso;
-      const bool inside = places.kind[i] != 0;
-      const Missed kind = object ? Missed::kPart : Missed::kCavity;
-      places.kind[i] = object == inside ? kNone : static_cast<uint8_t>(1 + static_cast<int>(kind));
-    }
-  });
-  Search search(image, places);
+                                const Executor& executor, VoxelSet& tried) {
+  Sets missed{VoxelSet(image.dims), VoxelSet(image.dims)};
+  {
+    const Disagreement disagreement(mesh, image, iso, inside_above);
+    executor.run(static_cast<size_t>(image.dims[2]),
+                 [&](size_t z) { disagreement.add(static_cast<int32_t>(z), missed); });
+  }
+  Search search(image, missed);
   search.clear_near(mesh, clearance);
   search.list_ball(radius);
+  MissedPlaces places;
   places.low.fill({image.dims[0], image.dims[1], image.dims[2]});
   places.high.fill({-1, -1, -1});
-  if (tried.empty()) {
-    tried.resize(voxels);
-    std::fill(tried.begin(), tried.end(), uint8_t{0});
-  }
-  std::vector<uint8_t> left(places.kind.begin(), places.kind.end());
-  std::vector<uint32_t> set;
-  std::vector<uint32_t> dropped;
-  for (size_t seed = 0; seed < voxels; ++seed) {
-    if (left[seed] == 0) continue;
-    const bool holds = search.flood(seed, left, set);
-    const bool fresh =
-        std::none_of(set.begin(), set.end(), [&](uint32_t i) { return tried[i] != 0; });
-    if (!holds || !fresh) {
-      dropped.insert(dropped.end(), set.begin(), set.end());
-      continue;
-    }
-    const auto k = static_cast<size_t>(places.kind[seed] - 1);
-    ++places.count[k];
-    for (const uint32_t i : set) {
-      tried[i] = 1;
-      const Voxel v = search.voxel(i);
+  if (!tried.has_image()) tried = VoxelSet(image.dims);
+  for (size_t k = 0; k < 2; ++k) {
+    places.voxels[k] = VoxelSet(image.dims);
+    VoxelSet left(missed[k]);
+    left.visit([&](const Voxel& seed) {
+      const Place place = search.examine(seed, missed[k], tried, left);
+      if (!place.holds || place.tried) return;
+      ++places.count[k];
+      search.keep(seed, missed[k], places.voxels[k], tried);
       for (size_t a = 0; a < 3; ++a) {
-        places.low[k][a] = std::min(places.low[k][a], v[a]);
-        places.high[k][a] = std::max(places.high[k][a], v[a]);
+        places.low[k][a] = std::min(places.low[k][a], place.low[a]);
+        places.high[k][a] = std::max(places.high[k][a], place.high[a]);
       }
-    }
+    });
   }
-  // Only now: the places are judged in scan order, by what all of them were.
-  for (const uint32_t i : dropped) places.kind[i] = kNone;
   return places;
 }
 

@@ -341,9 +341,11 @@ struct plc_level_report {
 PLC_API int plc_surface_level_count(const plc_surface* surface);
 PLC_API plc_status plc_surface_level(const plc_surface* surface, int index,
                                      plc_level_report* report);
-/* Seconds of building the pyramid and of the evolution; the parameters as used, with everything
- * that was derived filled in. */
+/* Seconds of everything before the evolution - range, window, pyramid, iso-values - and of the
+ * evolution; the parameters as used, with everything that was derived filled in. */
 PLC_API void plc_surface_seconds(const plc_surface* surface, double* pyramid, double* evolution);
+/* Of the former, those of the pyramid's images alone. */
+PLC_API double plc_surface_image_seconds(const plc_surface* surface);
 PLC_API void plc_surface_parameters(const plc_surface* surface, plc_parameters* parameters);
 /* Smallest and largest voxel of the input. */
 PLC_API void plc_surface_input_range(const plc_surface* surface, double* low, double* high);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/constants.h"
 #include "engine/evolution.h"
@@ -24,22 +25,23 @@ EvolutionOptions evolution_options(const RecoverySpec& spec) {
 
 class Recovery {
  public:
-  Recovery(const Pyramid& pyramid, const RecoverySpec& spec, const Schedule& schedule,
-           SimdTarget simd, const RecoveryHooks& hooks, Mesh& mesh)
-      : pyramid_(pyramid),
+  Recovery(Pyramid pyramid, const RecoverySpec& spec, const Schedule& schedule, SimdTarget simd,
+           const RecoveryHooks& hooks, Mesh& mesh)
+      : pyramid_(std::move(pyramid)),
         spec_(spec),
         schedule_(schedule),
         simd_(simd),
         hooks_(hooks),
         mesh_(mesh),
         evolution_(mesh, schedule, simd, spec.model, evolution_options(spec)),
-        levels_(static_cast<int>(pyramid.levels.size()) - 1) {}
+        levels_(static_cast<int>(pyramid_.levels.size()) - 1) {}
 
   Status run(std::vector<LevelRecord>& records) {
     for (int h = levels_; h >= 0 && !stopped_; --h) {
       records.emplace_back();
       records.back().level = h;
       if (Status s = recover_level(h, records.back()); !s.ok()) return s;
+      pyramid_.levels[static_cast<size_t>(h)].values = Buffer<float>();  // not needed any more
     }
     renumber();
     return {};
@@ -144,7 +146,7 @@ class Recovery {
   Status recover_shape(int h, bool fresh, LevelRecord& record) {
     adapt(h, record);
     if (Status s = build_gradient_image(h); !s.ok()) return s;
-    tried_.clear();
+    tried_ = VoxelSet();
     bool added = false;
     if (!fresh) {
       if (Status s = add_late_bubbles(record, added); !s.ok()) return s;
@@ -286,7 +288,7 @@ class Recovery {
             fraction_};
   }
 
-  const Pyramid& pyramid_;
+  Pyramid pyramid_;
   const RecoverySpec& spec_;
   const Schedule& schedule_;
   SimdTarget simd_;
@@ -298,7 +300,7 @@ class Recovery {
   Guide guide_;
   UserConstraints user_;     // in the space of the level
   Buffer<Packed> gradient_;  // of the level
-  Buffer<uint8_t> tried_;    // voxels of the level's late bubbles
+  VoxelSet tried_;           // voxels of the level's late bubbles
   double energy_ = 0;        // of the last iteration on any level
   bool stopped_ = false;
   double fraction_ = 0;
@@ -306,11 +308,10 @@ class Recovery {
 
 }  // namespace
 
-Status pyramidal_recover_shape(const Pyramid& pyramid, const RecoverySpec& spec,
-                               const Schedule& schedule, SimdTarget simd,
-                               const RecoveryHooks& hooks, Mesh& mesh,
+Status pyramidal_recover_shape(Pyramid pyramid, const RecoverySpec& spec, const Schedule& schedule,
+                               SimdTarget simd, const RecoveryHooks& hooks, Mesh& mesh,
                                std::vector<LevelRecord>& records) {
-  Recovery recovery(pyramid, spec, schedule, simd, hooks, mesh);
+  Recovery recovery(std::move(pyramid), spec, schedule, simd, hooks, mesh);
   return recovery.run(records);
 }
 

@@ -75,9 +75,11 @@ struct RecoveryHooks {
 // then starts anew. The result is closed, oriented, free of self-intersections and in mesh_space()
 // of the last level of the records. Errors: those of start_surface(), kInvalidData (no level holds
 // a surface), kCancelled, kOutOfMemory, what the user's force returns.
-Status pyramidal_recover_shape(const Pyramid& pyramid, const RecoverySpec& spec,
-                               const Schedule& schedule, SimdTarget simd,
-                               const RecoveryHooks& hooks, Mesh& mesh,
+//
+// The pyramid is given away: a level's values are released when the recovery goes on to the next
+// finer one, so that on I_0, which is borrowed, none are left.
+Status pyramidal_recover_shape(Pyramid pyramid, const RecoverySpec& spec, const Schedule& schedule,
+                               SimdTarget simd, const RecoveryHooks& hooks, Mesh& mesh,
                                std::vector<LevelRecord>& records);
 
 }  // namespace plc

@@ -25,7 +25,7 @@ double side(const Point& a, const Point& b, double y, double z) {
 
 class Rows {
  public:
-  Rows(const Mesh& mesh, const ImageView& image, Buffer<uint8_t>& flips)
+  Rows(const Mesh& mesh, const ImageView& image, VoxelSet& flips)
       : mesh_(mesh), image_(image), flips_(flips) {}
 
   // Flips the first voxel behind each crossing of the face with a row.
@@ -72,23 +72,19 @@ class Rows {
     const double x = (a * p[0][0] + b * p[1][0] + c * p[2][0]) / (a + b + c);
     const auto first = static_cast<int64_t>(std::ceil(std::max(x, 0.0)));
     if (first >= image_.dims[0]) return;
-    flips_[static_cast<size_t>((k * image_.dims[1] + j) * image_.dims[0] + first)] ^= 1;
+    flips_.flip({static_cast<int32_t>(first), static_cast<int32_t>(j), static_cast<int32_t>(k)});
   }
 
   const Mesh& mesh_;
   const ImageView& image_;
-  Buffer<uint8_t>& flips_;
+  VoxelSet& flips_;
 };
 
 }  // namespace
 
-void voxel_sides(const Mesh& mesh, const ImageView& image, const Executor& executor,
-                 Buffer<uint8_t>& inside) {
-  const auto row = static_cast<size_t>(image.dims[0]);
-  const auto rows = static_cast<size_t>(image.dims[1]) * static_cast<size_t>(image.dims[2]);
-  inside.resize(row * rows);
-  std::fill(inside.begin(), inside.end(), uint8_t{0});
-  Rows crossings(mesh, image, inside);
+VoxelSides::VoxelSides(const Mesh& mesh, const ImageView& image)
+    : width_(image.dims[0]), flips_(image.dims) {
+  Rows crossings(mesh, image, flips_);
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     const uint32_t valence = mesh.valence(v);
     for (uint32_t k = 0; k < valence; ++k) {
@@ -97,13 +93,20 @@ void voxel_sides(const Mesh& mesh, const ImageView& image, const Executor& execu
       if (v < a && v < b) crossings.cross(v, a, b);
     }
   }
-  executor.run(static_cast<size_t>(image.dims[2]), [&](size_t z) {
-    for (size_t y = 0; y < static_cast<size_t>(image.dims[1]); ++y) {
-      uint8_t* at = inside.data() + (z * static_cast<size_t>(image.dims[1]) + y) * row;
-      uint8_t parity = 0;
-      for (size_t x = 0; x < row; ++x) at[x] = parity ^= at[x];
-    }
+}
+
+bool VoxelSides::row(int32_t y, int32_t z, uint8_t* inside) const {
+  int32_t from = 0;
+  uint8_t side = 0;
+  bool any = false;
+  flips_.visit_row(y, z, 0, width_, [&](int32_t x) {
+    std::fill(inside + from, inside + x, side);
+    from = x;
+    side ^= 1;
+    any = true;
   });
+  std::fill(inside + from, inside + width_, side);
+  return any;
 }
 
 }  // namespace plc

@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <type_traits>
 #include <vector>
 
 namespace plc {
@@ -16,6 +21,49 @@ constexpr double kReachOut = 2.0;
 constexpr double kReachIn = 5.0;
 constexpr size_t kBins = size_t{1} << 12;
 
+// Slices per task: each looks at one more on either side.
+constexpr size_t kSlices = 8;
+constexpr size_t kWord = sizeof(uint64_t);
+
+// Whether voxels belong to the object, by a comparison in their own type.
+template <typename Voxel>
+class InsideTest {
+ public:
+  InsideTest(double iso, bool above) : above_(above) {
+    // The voxel value of the object that is nearest to iso.
+    if constexpr (std::is_integral_v<Voxel>) {
+      const double end = above ? std::ceil(iso) : std::floor(iso);
+      // Where no value is beyond iso, none is: the comparison with the extreme one is then false.
+      const double least = std::numeric_limits<Voxel>::min();
+      const double most = std::numeric_limits<Voxel>::max();
+      none_ = above ? end > most : end < least;
+      end_ = static_cast<Voxel>(std::clamp(end, least, most));
+    } else {
+      end_ = static_cast<Voxel>(iso);
+      const double end = static_cast<double>(end_);
+      const Voxel beyond = above ? HUGE_VALF : -HUGE_VALF;
+      if (above ? end < iso : end > iso) end_ = std::nextafter(end_, beyond);
+    }
+  }
+
+  // inside[i] = 1 where voxel i belongs to the object, else 0.
+  void test(const Voxel* voxels, size_t count, uint8_t* inside) const {
+    const Voxel end = end_;  // bytes may be anything's, members too: a local lets loops be vectors
+    if (none_) {
+      std::fill_n(inside, count, uint8_t{0});
+    } else if (above_) {
+      for (size_t i = 0; i < count; ++i) inside[i] = static_cast<uint8_t>(voxels[i] >= end);
+    } else {
+      for (size_t i = 0; i < count; ++i) inside[i] = static_cast<uint8_t>(voxels[i] <= end);
+    }
+  }
+
+ private:
+  bool above_;
+  bool none_ = false;
+  Voxel end_{};
+};
+
 // Histograms of the voxels on both sides of the surface, over the range of the image.
 class BoundaryHistogram {
  public:
@@ -25,15 +73,18 @@ class BoundaryHistogram {
         range_(range),
         iso_(iso),
         above_(above),
-        slices_(static_cast<size_t>(volume.dims[2])) {
-    executor.run(slices_.size(), [&](size_t z) { scan(z); });
+        width_(static_cast<size_t>(volume.dims[0])),
+        rows_(static_cast<size_t>(volume.dims[1])),
+        slices_(static_cast<size_t>(volume.dims[2])),
+        parts_((slices_ + kSlices - 1) / kSlices) {
+    executor.run(parts_.size(), [&](size_t part) { scan(part); });
     for (auto& side : bins_) side.assign(kBins, 0);
-    for (const Slice& slice : slices_) {
+    for (const Part& part : parts_) {
       for (size_t side = 0; side < 2; ++side) {
-        for (size_t b = 0; b < slice.bins[side].size(); ++b) bins_[side][b] += slice.bins[side][b];
+        for (size_t b = 0; b < part.bins[side].size(); ++b) bins_[side][b] += part.bins[side][b];
       }
     }
-    slices_.clear();
+    parts_.clear();
   }
 
   // Of the object's boundary voxels (side 1) or of those across it (side 0).
@@ -51,63 +102,94 @@ class BoundaryHistogram {
   }
 
  private:
-  struct Slice {
+  struct Part {
     std::array<std::vector<uint32_t>, 2> bins;
   };
+  // Sides of the voxels of a slice, a byte each.
+  using Slice = std::vector<uint8_t>;
 
   double bin_width() const { return (range_.high - range_.low) / static_cast<double>(kBins); }
 
-  void scan(size_t z) {
+  void scan(size_t part) {
     switch (volume_.type) {
       case VoxelType::kU8:
-        return scan(static_cast<const uint8_t*>(volume_.voxels), z);
+        return scan(static_cast<const uint8_t*>(volume_.voxels), part);
       case VoxelType::kI16:
-        return scan(static_cast<const int16_t*>(volume_.voxels), z);
+        return scan(static_cast<const int16_t*>(volume_.voxels), part);
       case VoxelType::kU16:
-        return scan(static_cast<const uint16_t*>(volume_.voxels), z);
+        return scan(static_cast<const uint16_t*>(volume_.voxels), part);
       case VoxelType::kI32:
-        return scan(static_cast<const int32_t*>(volume_.voxels), z);
+        return scan(static_cast<const int32_t*>(volume_.voxels), part);
       case VoxelType::kF32:
-        return scan(static_cast<const float*>(volume_.voxels), z);
+        return scan(static_cast<const float*>(volume_.voxels), part);
     }
   }
 
   template <typename Voxel>
-  void scan(const Voxel* voxels, size_t slice) {
-    const int64_t nx = volume_.dims[0];
-    const int64_t ny = volume_.dims[1];
-    const int64_t nz = volume_.dims[2];
-    const auto z = static_cast<int64_t>(slice);
-    for (auto& side : slices_[slice].bins) side.assign(kBins, 0);
-    const auto inside = [&](double v) { return above_ ? v >= iso_ : v <= iso_; };
-    const int64_t step[3] = {1, nx, nx * ny};
-    for (int64_t y = 0; y < ny; ++y) {
-      for (int64_t x = 0; x < nx; ++x) {
-        const int64_t i = (z * ny + y) * nx + x;
-        const auto value = static_cast<double>(voxels[i]);
-        const bool here = inside(value);
-        const bool first[3] = {x == 0, y == 0, z == 0};
-        const bool last[3] = {x == nx - 1, y == ny - 1, z == nz - 1};
-        bool boundary = false;
-        for (int a = 0; a < 3 && !boundary; ++a) {
-          boundary = (!first[a] && inside(static_cast<double>(voxels[i - step[a]])) != here) ||
-                     (!last[a] && inside(static_cast<double>(voxels[i + step[a]])) != here);
-        }
-        if (boundary) count(slices_[slice].bins[here ? 1 : 0], value);
+  void scan(const Voxel* voxels, size_t index) {
+    const size_t begin = index * kSlices;
+    const size_t end = std::min(slices_, begin + kSlices);
+    const size_t size = width_ * rows_;
+    for (auto& side : parts_[index].bins) side.assign(kBins, 0);
+    const InsideTest<Voxel> inside(iso_, above_);
+    Slice below(size), here(size), above(size);
+    Slice differ((width_ + kWord - 1) / kWord * kWord, 0);
+    // At the ends of the volume a slice is its own neighbour.
+    const auto read = [&](size_t z, Slice& slice) {
+      inside.test(voxels + std::min(z, slices_ - 1) * size, size, slice.data());
+    };
+    read(begin == 0 ? 0 : begin - 1, below);
+    read(begin, here);
+    for (size_t z = begin; z < end; ++z) {
+      read(z + 1, above);
+      for (size_t y = 0; y < rows_; ++y) {
+        const size_t row = y * width_;
+        const size_t before = y == 0 ? row : row - width_;
+        const size_t behind = y + 1 == rows_ ? row : row + width_;
+        compare(
+            here.data() + row,
+            {here.data() + before, here.data() + behind, below.data() + row, above.data() + row},
+            differ.data());
+        count(voxels + z * size + row, here.data() + row, differ, parts_[index]);
       }
+      below.swap(here);
+      here.swap(above);
     }
   }
 
-  void count(std::vector<uint32_t>& bins, double value) const {
-    const double b = (value - range_.low) / bin_width();
-    ++bins[std::min(static_cast<size_t>(b), kBins - 1)];
+  // differ[x] is not 0 where a voxel of the row has a neighbour on the other side.
+  void compare(const uint8_t* row, const std::array<const uint8_t*, 4>& beside,
+               uint8_t* differ) const {
+    const size_t width = width_;
+    const auto [a, b, c, d] = beside;
+    for (size_t x = 0; x < width; ++x) {
+      differ[x] = static_cast<uint8_t>((row[x] ^ a[x]) | (row[x] ^ b[x]) | (row[x] ^ c[x]) |
+                                       (row[x] ^ d[x]));
+    }
+    for (size_t x = 1; x < width; ++x) differ[x] |= row[x] ^ row[x - 1];
+    for (size_t x = 1; x < width; ++x) differ[x - 1] |= row[x] ^ row[x - 1];
+  }
+
+  template <typename Voxel>
+  void count(const Voxel* row, const uint8_t* inside, const Slice& differ, Part& part) const {
+    for (size_t first = 0; first < differ.size(); first += kWord) {
+      uint64_t word = 0;
+      std::memcpy(&word, differ.data() + first, kWord);
+      if (word == 0) continue;
+      for (size_t x = first; x < first + kWord; ++x) {
+        if (differ[x] == 0) continue;
+        const double b = (static_cast<double>(row[x]) - range_.low) / bin_width();
+        ++part.bins[inside[x]][std::min(static_cast<size_t>(b), kBins - 1)];
+      }
+    }
   }
 
   const VolumeView& volume_;
   const VoxelRange& range_;
   double iso_;
   bool above_;
-  std::vector<Slice> slices_;
+  size_t width_, rows_, slices_;
+  std::vector<Part> parts_;
   std::array<std::vector<uint64_t>, 2> bins_;
 };
 

@@ -41,9 +41,7 @@ struct Place {
   alignas(64) uint32_t cell[kLanes];
 };
 
-// `View` is an ImageView or a GradientView.
-template <class View>
-HWY_INLINE Place locate(const View& image, const Floats3& p) {
+HWY_INLINE Place locate(const GradientView& image, const Floats3& p) {
   const IntTag di;
   const hn::RebindToUnsigned<IntTag> du;
   const Cells x = locate(p.x, image.scale[0], image.offset[0], image.dims[0]);
@@ -56,6 +54,40 @@ HWY_INLINE Place locate(const View& image, const Floats3& p) {
   Place place{x.fraction, y.fraction, z.fraction, row, plane, {}};
   hn::Store(hn::BitCast(du, cell), du, place.cell);
   return place;
+}
+
+// Where the lanes' cells lie among the stored voxels of an image.
+struct Stored {
+  size_t row, plane;  // steps to the next row and plane
+  bool all;           // whether all eight voxels of every lane's cell are stored; else `first` lies
+  alignas(64) uint32_t first[kLanes];  // the first voxel of each lane's cell
+};
+
+// kPadded: whether the image may have a padding.
+template <bool kPadded>
+HWY_INLINE Stored stored(const ImageView& image, const Cells& x, const Cells& y, const Cells& z) {
+  const IntTag di;
+  const hn::RebindToUnsigned<IntTag> du;
+  const int32_t pad = kPadded ? image.form.pad : 0;
+  const int32_t row = image.dims[0] - 2 * pad;
+  const int32_t rows = image.dims[1] - 2 * pad;
+  const auto unpadded = [&](Ints index)
+                            HWY_ATTR { return kPadded ? hn::Sub(index, hn::Set(di, pad)) : index; };
+  const Ints i = unpadded(x.index), j = unpadded(y.index), k = unpadded(z.index);
+  const Ints cell =
+      hn::Add(i, hn::Add(hn::Mul(j, hn::Set(di, row)), hn::Mul(k, hn::Set(di, row * rows))));
+  bool all = true;
+  if constexpr (kPadded) {
+    const auto within = [&](Ints index, int32_t dim) HWY_ATTR {
+      return hn::And(hn::Gt(index, hn::Set(di, -1)), hn::Gt(hn::Set(di, dim - 2 * pad - 1), index));
+    };
+    all = hn::AllTrue(di, hn::And(hn::And(within(i, image.dims[0]), within(j, image.dims[1])),
+                                  within(k, image.dims[2])));
+  }
+  Stored result{
+      static_cast<size_t>(row), static_cast<size_t>(row) * static_cast<size_t>(rows), all, {}};
+  hn::Store(hn::BitCast(du, cell), du, result.first);
+  return result;
 }
 
 HWY_INLINE Floats lerp(Floats a, Floats b, Floats t) {

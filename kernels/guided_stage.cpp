@@ -37,11 +37,19 @@ HWY_INLINE Floats3 surface_force(const SurfaceForces& f, Floats value, uint32_t 
 // 120,000 vertices on a machine whose cache others use too (avx512, ns per vertex and step): none
 // 197, the voxels of the next block 178, and the streams of the block after it 168; twice as far
 // ahead 174.
+template <class Voxel>
 HWY_INLINE void prefetch_voxels(const SurfaceForces& f, uint32_t begin) {
+  const ImageView& image = f.image;
+  const auto* voxels = static_cast<const Voxel*>(image.data);
   for (uint32_t i = begin; i < begin + kRingLanes; i += kLanes) {
-    const Place at = locate(f.image, load_packed(f.position + i));
+    const Floats3 p = load_packed(f.position + i);
+    const Cells x = locate(p.x, image.scale[0], image.offset[0], image.dims[0]);
+    const Cells y = locate(p.y, image.scale[1], image.offset[1], image.dims[1]);
+    const Cells z = locate(p.z, image.scale[2], image.offset[2], image.dims[2]);
+    const Stored at = stored<!std::is_same_v<Voxel, UnitVoxel>>(image, x, y, z);
+    if (!at.all) continue;
     for (uint32_t l = 0; l < kLanes; ++l) {
-      const auto* voxel = f.image.data + at.cell[l];
+      const auto* voxel = voxels + at.first[l];
       hwy::Prefetch(voxel);
       hwy::Prefetch(voxel + at.row);
       hwy::Prefetch(voxel + at.plane);
@@ -80,14 +88,17 @@ HWY_INLINE void visit_blocks(const SurfaceForces& f, const Rk4Streams& s, const 
   alignas(64) float values[kChunk * kRingLanes];
   for (size_t first = 0; first < blocks.count; first += kChunk) {
     const size_t end = HWY_MIN(first + kChunk, blocks.count);
-    for (size_t b = first; b < end; ++b) {
-      if (b + 1 < blocks.count) prefetch_voxels(f, blocks.begin(b + 1));
-      const uint32_t begin = blocks.begin(b);
-      for (uint32_t i = 0; i < kRingLanes; i += kLanes) {
-        hn::Store(sample(f.image, load_packed(f.position + begin + i)), FloatTag(),
-                  values + (b - first) * kRingLanes + i);
+    with_voxel_type(f.image.form.type, [&](auto voxel) HWY_ATTR {
+      using Voxel = decltype(voxel);
+      for (size_t b = first; b < end; ++b) {
+        if (b + 1 < blocks.count) prefetch_voxels<Voxel>(f, blocks.begin(b + 1));
+        const uint32_t begin = blocks.begin(b);
+        for (uint32_t i = 0; i < kRingLanes; i += kLanes) {
+          hn::Store(sample<Voxel>(f.image, load_packed(f.position + begin + i)), FloatTag(),
+                    values + (b - first) * kRingLanes + i);
+        }
       }
-    }
+    });
     for (size_t b = first; b < end; ++b) {
       if (b + kAhead < blocks.count) prefetch_block<kStage>(f, s, blocks.begin(b + kAhead));
       visit(blocks.begin(b), values + (b - first) * kRingLanes);

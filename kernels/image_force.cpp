@@ -21,21 +21,26 @@ using scalar::sample_trilinear;
 void sample_trilinear(const ImageView& image, const Packed* position, uint32_t begin, uint32_t end,
                       float* values) {
   uint32_t i = begin;
-  for (; end - i >= kLanes; i += kLanes) {
-    hn::StoreU(sample(image, load_packed(position + i)), FloatTag(), values + i);
-  }
+  with_voxel_type(image.form.type, [&](auto voxel) HWY_ATTR {
+    for (; end - i >= kLanes; i += kLanes) {
+      const Floats value = sample<decltype(voxel)>(image, load_packed(position + i));
+      hn::StoreU(value, FloatTag(), values + i);
+    }
+  });
   scalar::sample_trilinear(image, position, i, end, values);
 }
 
 void iso_force(const ImageView& image, const Packed* position, const float* nx, const float* ny,
                const float* nz, float coefficient, float iso, uint32_t begin, uint32_t end,
                float* fx, float* fy, float* fz) {
-  const FloatTag d;
-  for (uint32_t i = begin; i < end; i += kLanes) {
-    const Floats value = sample(image, load_packed(position + i));
-    const Floats push = hn::Mul(hn::Set(d, coefficient), hn::Sub(hn::Set(d, iso), value));
-    store3(load3(fx, fy, fz, i) + load3(nx, ny, nz, i) * push, fx, fy, fz, i);
-  }
+  with_voxel_type(image.form.type, [&](auto voxel) HWY_ATTR {
+    const FloatTag d;
+    for (uint32_t i = begin; i < end; i += kLanes) {
+      const Floats value = sample<decltype(voxel)>(image, load_packed(position + i));
+      const Floats push = hn::Mul(hn::Set(d, coefficient), hn::Sub(hn::Set(d, iso), value));
+      store3(load3(fx, fy, fz, i) + load3(nx, ny, nz, i) * push, fx, fy, fz, i);
+    }
+  });
 }
 
 #endif  // PLC_SCALAR_TARGET

@@ -1,4 +1,9 @@
 // Trilinear sampling of an image, lanes are places (3.8). Included once per target.
+//
+// A kernel chooses the voxel's type once, outside of its loop:
+//   with_voxel_type(image.form.type, [&](auto voxel) HWY_ATTR {
+//     for (...) { const Floats value = sample<decltype(voxel)>(image, place); ... }
+//   });
 #if defined(PELLICLE_KERNELS_SAMPLE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PELLICLE_KERNELS_SAMPLE_INL_H
 #undef PELLICLE_KERNELS_SAMPLE_INL_H
@@ -6,8 +11,12 @@
 #define PELLICLE_KERNELS_SAMPLE_INL_H
 #endif
 
+#include <cstring>
+#include <type_traits>
+
 #include "kernels/cells-inl.h"
 #include "kernels/image.h"
+#include "kernels/image_value.h"
 #include "kernels/vectors-inl.h"
 
 #if !PLC_SCALAR_TARGET
@@ -17,7 +26,7 @@ namespace plc::kernels::HWY_NAMESPACE {
 // The four voxels of a cell in one plane: two 8-byte loads, which cost less than gathers.
 struct CellQuads {
   const float* plane;
-  int32_t row;
+  size_t row;
   const uint32_t* offset;  // of each lane's cell
   HWY_INLINE Quad operator()(uint32_t lane) const {
     const hn::Half<QuadTag> pair;
@@ -26,17 +35,130 @@ struct CellQuads {
   }
 };
 
-// Bilinear in the plane of voxels: x, then y.
-HWY_INLINE Floats sample_plane(const CellQuads& cells, Floats x, Floats y) {
-  const Floats4 quad = load_transposed(cells);
-  return lerp(lerp(quad.x, quad.y, x), lerp(quad.z, quad.w, x), y);
+// The voxels of every lane's cell in one plane, as floats: x and x + 1 of row y, then of row y + 1.
+// Nothing is read but these voxels.
+template <class Voxel>
+HWY_INLINE Floats4 load_cells(const Voxel* plane, size_t row, const uint32_t* offset) {
+  const FloatTag d;
+  const IntTag di;
+  if constexpr (sizeof(Voxel) == 4) {
+    return load_transposed(CellQuads{reinterpret_cast<const float*>(plane), row, offset});
+  } else if constexpr (sizeof(Voxel) == 2) {
+    alignas(64) int32_t near[kLanes], far[kLanes];
+    for (uint32_t lane = 0; lane < kLanes; ++lane) {
+      std::memcpy(near + lane, plane + offset[lane], 4);
+      std::memcpy(far + lane, plane + offset[lane] + row, 4);
+    }
+    const Ints a = hn::Load(di, near), b = hn::Load(di, far);
+    if constexpr (std::is_signed_v<Voxel>) {
+      return {hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(a))),
+              hn::ConvertTo(d, hn::ShiftRight<16>(a)),
+              hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(b))),
+              hn::ConvertTo(d, hn::ShiftRight<16>(b))};
+    } else {
+      const hn::RebindToUnsigned<IntTag> du;
+      const Ints low = hn::Set(di, 0xFFFF);
+      const auto high = [&](Ints v) HWY_ATTR {
+        return hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(du, v)));
+      };
+      return {hn::ConvertTo(d, hn::And(a, low)), hn::ConvertTo(d, high(a)),
+              hn::ConvertTo(d, hn::And(b, low)), hn::ConvertTo(d, high(b))};
+    }
+  } else {
+    alignas(64) uint32_t quad[kLanes];
+    for (uint32_t lane = 0; lane < kLanes; ++lane) {
+      uint16_t near, far;
+      std::memcpy(&near, plane + offset[lane], 2);
+      std::memcpy(&far, plane + offset[lane] + row, 2);
+      quad[lane] = static_cast<uint32_t>(near) | static_cast<uint32_t>(far) << 16;
+    }
+    const hn::RebindToUnsigned<IntTag> du;
+    const auto all = hn::Load(du, quad);
+    const auto low = hn::Set(du, 0xFF);
+    return {hn::ConvertTo(d, hn::BitCast(di, hn::And(all, low))),
+            hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<8>(all), low))),
+            hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRight<16>(all), low))),
+            hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<24>(all)))};
+  }
 }
 
+// The values of stored voxels; the bits of voxel_value().
+template <class Voxel>
+struct VoxelValues {
+  Floats low, scale;
+  HWY_INLINE explicit VoxelValues(const VoxelForm& form)
+      : low(hn::Set(FloatTag(), form.low)), scale(hn::Set(FloatTag(), form.scale)) {}
+  HWY_INLINE Floats operator()(Floats voxel) const {
+    if constexpr (std::is_same_v<Voxel, UnitVoxel>) return voxel;
+    const FloatTag d;
+    const Floats one = hn::Set(d, 1.0F);
+    const Floats t = hn::Mul(hn::Sub(voxel, low), scale);
+    if constexpr (std::is_integral_v<Voxel>) return hn::Min(hn::Max(t, hn::Zero(d)), one);
+    const Floats positive = hn::IfThenElseZero(hn::Gt(t, hn::Zero(d)), t);  // of a NaN: 0
+    return hn::IfThenElse(hn::Lt(positive, one), positive, one);
+  }
+};
+
+// Bilinear in a plane of voxels: x, then y.
+template <class Voxel>
+HWY_INLINE Floats sample_plane(const Voxel* plane, size_t row, const uint32_t* offset,
+                               const VoxelValues<Voxel>& value, Floats x, Floats y) {
+  const Floats4 cell = load_cells(plane, row, offset);
+  return lerp(lerp(value(cell.x), value(cell.y), x), lerp(value(cell.z), value(cell.w), x), y);
+}
+
+// Any place, voxel by voxel: for vectors with a lane whose cell lies in the padding or at its
+// border, which are as rare as objects that the image cuts.
+template <class Voxel>
+HWY_NOINLINE void padded_corners(const ImageView& image, const int32_t* x, const int32_t* y,
+                                 const int32_t* z, float* corners) {
+  for (uint32_t lane = 0; lane < kLanes; ++lane) {
+    for (uint32_t c = 0; c < 8; ++c) {
+      corners[c * kLanes + lane] = image_value<Voxel>(image, x[lane] + static_cast<int32_t>(c & 1),
+                                                      y[lane] + static_cast<int32_t>(c >> 1 & 1),
+                                                      z[lane] + static_cast<int32_t>(c >> 2));
+    }
+  }
+}
+
+template <class Voxel>
+HWY_INLINE Floats sample_padded(const ImageView& image, const Cells& x, const Cells& y,
+                                const Cells& z) {
+  const FloatTag d;
+  const IntTag di;
+  alignas(64) int32_t at[3][kLanes];
+  alignas(64) float corners[8 * kLanes];
+  hn::Store(x.index, di, at[0]);
+  hn::Store(y.index, di, at[1]);
+  hn::Store(z.index, di, at[2]);
+  padded_corners<Voxel>(image, at[0], at[1], at[2], corners);
+  const auto along_x = [&](uint32_t c) HWY_ATTR {
+    return lerp(hn::Load(d, corners + c * kLanes), hn::Load(d, corners + (c + 1) * kLanes),
+                x.fraction);
+  };
+  const Floats below = lerp(along_x(0), along_x(2), y.fraction);
+  const Floats above = lerp(along_x(4), along_x(6), y.fraction);
+  return lerp(below, above, z.fraction);
+}
+
+// The image's value at p; Voxel is that of image.form.type. The bits of the scalar twin, and of the
+// same image with its padding and its values in memory as UnitVoxels.
+template <class Voxel>
 HWY_INLINE Floats sample(const ImageView& image, const Floats3& p) {
-  const Place at = locate(image, p);
-  const Floats below = sample_plane({image.data, at.row, at.cell}, at.x, at.y);
-  const Floats above = sample_plane({image.data + at.plane, at.row, at.cell}, at.x, at.y);
-  return lerp(below, above, at.z);
+  const Cells x = locate(p.x, image.scale[0], image.offset[0], image.dims[0]);
+  const Cells y = locate(p.y, image.scale[1], image.offset[1], image.dims[1]);
+  const Cells z = locate(p.z, image.scale[2], image.offset[2], image.dims[2]);
+  constexpr bool kPadded = !std::is_same_v<Voxel, UnitVoxel>;
+  const Stored cells = stored<kPadded>(image, x, y, z);
+  if constexpr (kPadded) {
+    if (HWY_UNLIKELY(!cells.all)) return sample_padded<Voxel>(image, x, y, z);
+  }
+  const auto* voxels = static_cast<const Voxel*>(image.data);
+  const VoxelValues<Voxel> value(image.form);
+  const Floats below = sample_plane(voxels, cells.row, cells.first, value, x.fraction, y.fraction);
+  const Floats above =
+      sample_plane(voxels + cells.plane, cells.row, cells.first, value, x.fraction, y.fraction);
+  return lerp(below, above, z.fraction);
 }
 
 }  // namespace plc::kernels::HWY_NAMESPACE

@@ -69,6 +69,13 @@ void iso_force(const ImageView& image, const Packed* position, const float* nx, 
                const float* nz, float coefficient, float iso, uint32_t begin, uint32_t end,
                float* fx, float* fy, float* fz);
 
+// image_rows.h
+void image_rows(const ImageView& image, int64_t z, int64_t first, int64_t end, float* values);
+
+// blend_rows.h
+void blend_rows(const std::array<const float*, 4>& rows, float y, float z, size_t begin, size_t end,
+                float* out);
+
 // gradient_force.h
 void gradient_force(const GradientView& gradient, const Packed* position, const float* nx,
                     const float* ny, const float* nz, float along_normal, float along_tangent,

@@ -1,29 +1,14 @@
-// Scalar twins of kernels/image_force.h, gradient_force.h, voxels.h and separable.h.
+// Scalar twins of kernels/image_force.h, image_rows.h, blend_rows.h, gradient_force.h, voxels.h and
+// separable.h.
 #include <cmath>
 #include <limits>
 
+#include "kernels/image_value.h"
 #include "kernels/scalar.h"
 
 namespace plc::kernels::scalar {
 
 namespace {
-
-// The cell of a coordinate and the place in it. NaN and everything below the image give voxel 0,
-// everything above it the far end of the last cell.
-struct Cell {
-  int32_t index;
-  float fraction;
-};
-
-Cell locate(float p, float scale, float offset, int32_t dim) {
-  const float last = static_cast<float>(dim - 1);
-  float c = scale * p + offset;
-  c = c > 0.0F ? c : 0.0F;
-  c = c < last ? c : last;
-  int32_t index = static_cast<int32_t>(c);
-  index = index < dim - 2 ? index : dim - 2;
-  return {index, c - static_cast<float>(index)};
-}
 
 // The first voxel of a position's cell, the steps to the next row and plane, the place in the cell.
 struct Place {
@@ -31,11 +16,10 @@ struct Place {
   float x, y, z;
 };
 
-template <typename View>
-Place locate(const View& image, const Packed& p) {
-  const Cell x = locate(p.x, image.scale[0], image.offset[0], image.dims[0]);
-  const Cell y = locate(p.y, image.scale[1], image.offset[1], image.dims[1]);
-  const Cell z = locate(p.z, image.scale[2], image.offset[2], image.dims[2]);
+Place locate(const GradientView& image, const Packed& p) {
+  const AxisCell x = axis_cell(p.x, image.scale[0], image.offset[0], image.dims[0]);
+  const AxisCell y = axis_cell(p.y, image.scale[1], image.offset[1], image.dims[1]);
+  const AxisCell z = axis_cell(p.z, image.scale[2], image.offset[2], image.dims[2]);
   const int32_t row = image.dims[0];
   const int32_t plane = image.dims[0] * image.dims[1];
   const int32_t cell = x.index + y.index * row + z.index * plane;
@@ -56,8 +40,39 @@ float trilinear(const Place& at, const Value& value) {
   return lerp(in_plane(at.cell), in_plane(at.cell + at.plane), at.z);
 }
 
+// value(i, j, k) at the corners of a cell, 0 or 1 along each axis: along x, then y, then z.
+template <typename Value>
+float trilinear(const AxisCell& x, const AxisCell& y, const AxisCell& z, const Value& value) {
+  const auto along_x = [&](int32_t j, int32_t k) {
+    return lerp(value(0, j, k), value(1, j, k), x.fraction);
+  };
+  const auto in_plane = [&](int32_t k) { return lerp(along_x(0, k), along_x(1, k), y.fraction); };
+  return lerp(in_plane(0), in_plane(1), z.fraction);
+}
+
+template <class Voxel>
 float sample(const ImageView& image, const Packed& p) {
-  return trilinear(locate(image, p), [&](int32_t voxel) { return image.data[voxel]; });
+  const AxisCell x = axis_cell(p.x, image.scale[0], image.offset[0], image.dims[0]);
+  const AxisCell y = axis_cell(p.y, image.scale[1], image.offset[1], image.dims[1]);
+  const AxisCell z = axis_cell(p.z, image.scale[2], image.offset[2], image.dims[2]);
+  constexpr bool kUnit = std::is_same_v<Voxel, UnitVoxel>;
+  const int32_t pad = kUnit ? 0 : image.form.pad;
+  const auto stored = [pad](const AxisCell& c, int32_t dim) {
+    return c.index >= pad && c.index < dim - pad - 1;
+  };
+  if (!kUnit &&
+      !(stored(x, image.dims[0]) && stored(y, image.dims[1]) && stored(z, image.dims[2]))) {
+    return trilinear(x, y, z, [&](int32_t i, int32_t j, int32_t k) {
+      return image_value<Voxel>(image, x.index + i, y.index + j, z.index + k);
+    });
+  }
+  const auto row = static_cast<ptrdiff_t>(image.dims[0] - 2 * pad);
+  const ptrdiff_t plane = row * (image.dims[1] - 2 * pad);
+  const Voxel* cell = static_cast<const Voxel*>(image.data) + (x.index - pad) +
+                      (y.index - pad) * row + (z.index - pad) * plane;
+  return trilinear(x, y, z, [&](int32_t i, int32_t j, int32_t k) {
+    return voxel_value(image.form, cell[i + j * row + k * plane]);
+  });
 }
 
 Triple sample(const GradientView& gradient, const Packed& p) {
@@ -109,17 +124,32 @@ float weighted_sum(const float* weights, int32_t taps, const float* in, size_t s
 
 void sample_trilinear(const ImageView& image, const Packed* position, uint32_t begin, uint32_t end,
                       float* values) {
-  for (uint32_t i = begin; i < end; ++i) values[i] = sample(image, position[i]);
+  with_voxel_type(image.form.type, [&](auto voxel) {
+    for (uint32_t i = begin; i < end; ++i) values[i] = sample<decltype(voxel)>(image, position[i]);
+  });
 }
 
 void iso_force(const ImageView& image, const Packed* position, const float* nx, const float* ny,
                const float* nz, float coefficient, float iso, uint32_t begin, uint32_t end,
                float* fx, float* fy, float* fz) {
-  for (uint32_t i = begin; i < end; ++i) {
-    const float push = coefficient * (iso - sample(image, position[i]));
-    fx[i] += push * nx[i];
-    fy[i] += push * ny[i];
-    fz[i] += push * nz[i];
+  with_voxel_type(image.form.type, [&](auto voxel) {
+    for (uint32_t i = begin; i < end; ++i) {
+      const float push = coefficient * (iso - sample<decltype(voxel)>(image, position[i]));
+      fx[i] += push * nx[i];
+      fy[i] += push * ny[i];
+      fz[i] += push * nz[i];
+    }
+  });
+}
+
+void image_rows(const ImageView& image, int64_t z, int64_t first, int64_t end, float* values) {
+  for (int64_t y = first; y < end; ++y, values += image.dims[0]) image_row(image, y, z, values);
+}
+
+void blend_rows(const std::array<const float*, 4>& rows, float y, float z, size_t begin, size_t end,
+                float* out) {
+  for (size_t i = begin; i < end; ++i) {
+    out[i] = lerp(lerp(rows[0][i], rows[1][i], y), lerp(rows[2][i], rows[3][i], y), z);
   }
 }
 

@@ -1,8 +1,11 @@
 #include "pyramid/base_image.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
+#include "kernels/image_rows.h"
+#include "kernels/image_value.h"
 #include "pyramid/pyramid.h"
 
 namespace plc {
@@ -16,35 +19,109 @@ const uint8_t* voxel_address(const VolumeView& volume, size_t index) {
   return static_cast<const uint8_t*>(volume.voxels) + index * voxel_size(volume.type);
 }
 
+ImageType borrowed_type(VoxelType type) {
+  switch (type) {
+    case VoxelType::kU8:
+      return ImageType::kU8;
+    case VoxelType::kI16:
+      return ImageType::kI16;
+    case VoxelType::kU16:
+      return ImageType::kU16;
+    case VoxelType::kF32:
+      return ImageType::kF32;
+    case VoxelType::kI32:
+      break;
+  }
+  return ImageType::kUnit;
+}
+
+// Far inside the range of floats: neither a difference of voxels nor its product overflows. 32-bit
+// integers are floats as long as the window ends where floats hold them; what lies beyond is
+// clipped.
+bool within_floats(const VolumeView& volume, const Window& window) {
+  const double most = volume.type == VoxelType::kI32 ? 0x1p24 : 1e30;
+  return std::abs(window.low) < most && window.scale > 1e-30 && window.scale < 1e30 &&
+         std::abs(window.low + 1 / window.scale) < most;
+}
+
+VoxelForm form_of(const VolumeView& volume, const Window& window, int64_t pad, double pad_value) {
+  VoxelForm form;
+  form.type = borrowed_type(volume.type);
+  form.pad = static_cast<int32_t>(pad);
+  form.low = static_cast<float>(window.low);
+  form.scale = static_cast<float>(window.scale);
+  form.pad_value = voxel_value(form, static_cast<float>(pad_value));
+  return form;
+}
+
+// Row (y, z) of the image: write(first voxel, values) for what lies between its borders.
+template <typename Write>
+void write_row(const VolumeView& volume, int64_t pad, float border, int64_t y, int64_t z,
+               const Write& write, float* values) {
+  const int64_t width = volume.dims[0] + 2 * pad;
+  const int64_t j = y - pad, k = z - pad;
+  std::fill_n(values, width, border);
+  if (j < 0 || k < 0 || j >= volume.dims[1] || k >= volume.dims[2]) return;
+  write(static_cast<size_t>((k * volume.dims[1] + j) * volume.dims[0]), values + pad);
+}
+
+template <typename Body>  // body(y, z, values of the row)
+void for_rows(const std::array<int64_t, 3>& dims, const Executor& executor, float* values,
+              const Body& body) {
+  executor.run(static_cast<size_t>(dims[2]), [&](size_t slice) {
+    const auto z = static_cast<int64_t>(slice);
+    for (int64_t y = 0; y < dims[1]; ++y) body(y, z, values + (z * dims[1] + y) * dims[0]);
+  });
+}
+
 }  // namespace
+
+VoxelForm borrowed_form(const VolumeView& volume, const Window& window, int64_t pad,
+                        double pad_value) {
+  if (!within_floats(volume, window)) return {};
+  const VoxelForm form = form_of(volume, window, pad, pad_value);
+  return form.type == ImageType::kUnit ? VoxelForm() : form;
+}
+
+float window_value(const VolumeView& volume, const Window& window, double value) {
+  if (within_floats(volume, window)) {
+    return voxel_value(form_of(volume, window, 0, 0), static_cast<float>(value));
+  }
+  return static_cast<float>(std::clamp((value - window.low) * window.scale, 0.0, 1.0));
+}
 
 void make_base_image(const VolumeView& volume, const Window& window, int64_t pad, double pad_value,
                      const Executor& executor, SimdTarget simd, float* values) {
-  const auto border = static_cast<size_t>(pad);
-  const auto m = static_cast<size_t>(volume.dims[0]);
-  const auto n = static_cast<size_t>(volume.dims[1]);
-  const auto p = static_cast<size_t>(volume.dims[2]);
-  const size_t row_size = m + 2 * border;
-  const size_t plane_size = row_size * (n + 2 * border);
-  const auto pad_to =
-      static_cast<float>(std::clamp((pad_value - window.low) * window.scale, 0.0, 1.0));
-  executor.run(p + 2 * border, [&](size_t z) {
-    float* plane = values + z * plane_size;
-    if (z < border || z >= border + p) {
-      std::fill_n(plane, plane_size, pad_to);
-      return;
-    }
-    std::fill_n(plane, border * row_size, pad_to);
-    for (size_t y = 0; y < n; ++y) {
-      float* row = plane + (border + y) * row_size;
-      std::fill_n(row, border, pad_to);
-      kernels::normalize_voxels(simd, volume.type,
-                                voxel_address(volume, ((z - border) * n + y) * m), m, window.low,
-                                window.scale, row + border);
-      std::fill_n(row + border + m, border, pad_to);
-    }
-    std::fill_n(plane + (border + n) * row_size, border * row_size, pad_to);
-  });
+  std::array<int64_t, 3> dims = volume.dims;
+  for (int64_t& dim : dims) dim += 2 * pad;
+  const auto count = static_cast<size_t>(volume.dims[0]);
+  const float border = window_value(volume, window, pad_value);
+  ImageView image;
+  image.data = volume.voxels;
+  for (size_t a = 0; a < 3; ++a) image.dims[a] = static_cast<int32_t>(dims[a]);
+  image.form = borrowed_form(volume, window, pad, pad_value);
+  if (image.form.type != ImageType::kUnit) {
+    for_rows(dims, executor, values, [&](int64_t y, int64_t z, float* row) {
+      kernels::image_rows(simd, image, z, y, y + 1, row);
+    });
+  } else if (within_floats(volume, window)) {
+    const VoxelForm form = form_of(volume, window, pad, pad_value);
+    const auto* voxels = static_cast<const int32_t*>(volume.voxels);
+    const auto write = [&](size_t first, float* to) {
+      for (size_t i = 0; i < count; ++i) to[i] = voxel_value(form, voxels[first + i]);
+    };
+    for_rows(dims, executor, values, [&](int64_t y, int64_t z, float* row) {
+      write_row(volume, pad, border, y, z, write, row);
+    });
+  } else {
+    const auto write = [&](size_t first, float* to) {
+      kernels::normalize_voxels(simd, volume.type, voxel_address(volume, first), count, window.low,
+                                window.scale, to);
+    };
+    for_rows(dims, executor, values, [&](int64_t y, int64_t z, float* row) {
+      write_row(volume, pad, border, y, z, write, row);
+    });
+  }
 }
 
 VoxelRange voxel_range(const VolumeView& volume, const Executor& executor, SimdTarget simd) {

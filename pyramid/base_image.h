@@ -1,8 +1,9 @@
-// I_0: the volume in a border of one value, its window mapped to [0,1].
+// I_0: the volume in a border of one value, its window mapped to [0,1]; borrowed, or written.
 #pragma once
 #include <array>
 #include <cstdint>
 
+#include "kernels/image.h"
 #include "kernels/simd.h"
 #include "pyramid/executor.h"
 #include "pyramid/volume.h"
@@ -14,7 +15,17 @@ struct Window {
   double scale = 1;  // 1 / (high - low); high and everything above map to 1
 };
 
-// Writes (M + 2 pad) (N + 2 pad) (P + 2 pad) values, x fastest.
+// How the volume's own voxels are read as I_0: (v - low) scale in floats, as kernels/image.h has
+// it. Type kUnit where they cannot be: 32-bit integers, and windows beyond the range of floats.
+VoxelForm borrowed_form(const VolumeView& volume, const Window& window, int64_t pad,
+                        double pad_value);
+
+// What a voxel of this value has on I_0: the same bits as the voxel itself.
+float window_value(const VolumeView& volume, const Window& window, double value);
+
+// Writes (M + 2 pad) (N + 2 pad) (P + 2 pad) values, x fastest: the bits of the borrowed image
+// where there is one, and those of equal voxels of another type. Windows beyond the range of
+// floats, or of the integers that floats hold, are mapped by double arithmetic.
 void make_base_image(const VolumeView& volume, const Window& window, int64_t pad, double pad_value,
                      const Executor& executor, SimdTarget simd, float* values);
 

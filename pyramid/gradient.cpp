@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <new>
 
+#include "kernels/image_rows.h"
 #include "kernels/sobel.h"
 #include "pyramid/check_volume.h"
 #include "pyramid/sobel_image.h"
@@ -37,6 +38,15 @@ Status check_units(const std::array<double, 3>& voxel_length, double bound) {
   return {};
 }
 
+void copy_values(const PyramidLevel& level, const Executor& executor, SimdTarget simd,
+                 float* values) {
+  const ImageView image = level_image(level);
+  executor.run(static_cast<size_t>(level.dims[2]), [&](size_t z) {
+    const size_t plane = static_cast<size_t>(level.dims[0]) * static_cast<size_t>(level.dims[1]);
+    kernels::image_rows(simd, image, static_cast<int64_t>(z), 0, level.dims[1], values + z * plane);
+  });
+}
+
 }  // namespace
 
 Status build_gradient(const PyramidLevel& level, const std::array<double, 3>& voxel_length,
@@ -49,9 +59,19 @@ Status build_gradient(const PyramidLevel& level, const std::array<double, 3>& vo
   for (size_t a = 0; a < 3; ++a) scale[a] = within_floats(1.0 / voxel_length[a]);
   bool enough_memory = true;
   try {
-    gradient.resize_uninitialized(level.values.size());
-    enough_memory = sobel_image(
-        level.values.data(), level.dims, scale, executor, simd, [&](const GradientRow& row) {
+    const auto voxels = static_cast<size_t>(level.dims[0] * level.dims[1] * level.dims[2]);
+    gradient.resize_uninitialized(voxels);
+    // The Sobel rows of a borrowed I_0 are read from a copy in floats, a quarter of the gradient's
+    // own size.
+    Buffer<float> copy;
+    const float* values = level.values.data();
+    if (level.borrowed != nullptr) {
+      copy.resize_uninitialized(voxels);
+      copy_values(level, executor, simd, copy.data());
+      values = copy.data();
+    }
+    enough_memory =
+        sobel_image(values, level.dims, scale, executor, simd, [&](const GradientRow& row) {
           kernels::bound_vectors(simd, row.gx, row.gy, row.gz, row.width, within_floats(bound),
                                  gradient.data() + row.first);
         });

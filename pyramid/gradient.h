@@ -17,7 +17,7 @@ namespace plc {
 // leaves the unit open: divided by the bound, the force has the size of (7) whatever the contrast.
 //   voxel_length: the length of a voxel along each axis in units of U_h; finite, > 0
 //   bound:        change of the image's value per U_h; finite, > 0
-// 16 bytes per voxel; nothing else of the image's size is allocated. Errors: kInvalidArgument
+// 16 bytes per voxel; besides, for a borrowed I_0, 4 while it is built. Errors: kInvalidArgument
 // (bound, voxel_length), kOutOfMemory; then `gradient` is empty. The same bits for any executor and
 // any target.
 Status build_gradient(const PyramidLevel& level, const std::array<double, 3>& voxel_length,

@@ -8,6 +8,9 @@
 
 namespace plc {
 
+// Whether a voxel is neither 0 nor NaN.
+bool is_any_set(const VolumeView& volume, const Executor& executor);
+
 // object[i] = 1 where voxel i is neither 0 nor NaN, else 0. False where there is none.
 bool set_voxels(const VolumeView& volume, const Executor& executor, Buffer<uint8_t>& object);
 

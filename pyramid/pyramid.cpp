@@ -89,8 +89,24 @@ bool fill_level(const PyramidLevel& from, const Executor& executor, SimdTarget s
     taps[axis] = make_axis_taps(from.dims[axis], to.dims[axis], spread);
   }
   to.values.resize_uninitialized(voxels_of(to));
-  return reduce_image(from.values.data(), from.dims, taps, to.dims, executor, simd,
-                      to.values.data());
+  return reduce_image(level_image(from), taps, to.dims, executor, simd, to.values.data());
+}
+
+Window window_of(const PyramidSpec& spec) {
+  return {spec.window_low, 1.0 / (spec.window_high - spec.window_low)};
+}
+
+void fill_base(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
+               SimdTarget simd, PyramidLevel& base) {
+  const Window window = window_of(spec);
+  base.form = borrowed_form(volume, window, spec.pad_voxels, spec.pad_value);
+  if (base.form.type != ImageType::kUnit) {
+    base.borrowed = volume.voxels;
+    return;
+  }
+  base.values.resize_uninitialized(voxels_of(base));
+  make_base_image(volume, window, spec.pad_voxels, spec.pad_value, executor, simd,
+                  base.values.data());
 }
 
 Status out_of_memory(const PyramidSpec& spec) {
@@ -108,9 +124,7 @@ Status build_levels(const VolumeView& volume, const PyramidSpec& spec, const Exe
     }
     base.voxel = volume.spacing;
     base.unit = *std::min_element(volume.spacing.begin(), volume.spacing.end());
-    base.values.resize_uninitialized(voxels_of(base));
-    make_base_image(volume, {spec.window_low, 1.0 / (spec.window_high - spec.window_low)},
-                    spec.pad_voxels, spec.pad_value, executor, simd, base.values.data());
+    fill_base(volume, spec, executor, simd, base);
     pyramid.levels.push_back(std::move(base));
     for (int h = 0; h < spec.levels; ++h) {
       PyramidLevel next = next_level(pyramid.levels.back(), spec.reduction);
@@ -124,6 +138,29 @@ Status build_levels(const VolumeView& volume, const PyramidSpec& spec, const Exe
 }
 
 }  // namespace
+
+ImageView level_image(const PyramidLevel& level) {
+  ImageView image;
+  image.data = level.values.data();
+  if (level.borrowed != nullptr) {
+    image.data = level.borrowed;
+    image.form = level.form;
+  }
+  for (size_t a = 0; a < 3; ++a) image.dims[a] = static_cast<int32_t>(level.dims[a]);
+  return image;
+}
+
+float base_value(const VolumeView& volume, const PyramidSpec& spec, double value) {
+  return window_value(volume, window_of(spec), value);
+}
+
+Pyramid without_values(const Pyramid& pyramid) {
+  Pyramid result;
+  for (const PyramidLevel& level : pyramid.levels) {
+    result.levels.push_back({level.dims, level.voxel, level.unit, {}, nullptr, {}});
+  }
+  return result;
+}
 
 int max_levels(const std::array<int64_t, 3>& padded_dims, double reduction) {
   if (!(reduction > 1.0 && reduction <= 2.0)) return 0;

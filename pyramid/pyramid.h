@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernels/image.h"
 #include "kernels/simd.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
@@ -12,13 +13,23 @@
 
 namespace plc {
 
-// One image I_h, values in [0,1], x fastest.
+// One image I_h, values in [0,1], x fastest. I_0 is the caller's volume where it lies: borrowed, in
+// its own type, padded and normalised as it is read. Where that cannot be (see build_pyramid) and
+// on the levels above it is a buffer of floats.
 struct PyramidLevel {
   std::array<int64_t, 3> dims{0, 0, 0};  // M_h, N_h, P_h (11)
   std::array<double, 3> voxel{0, 0, 0};  // mu/M_h, nu/N_h, pi/P_h, mm
   double unit = 0;                       // U_h = rho^h U_0 (11), mm
-  Buffer<float> values;
+  Buffer<float> values;                  // empty where the voxels are borrowed, and once released
+  const void* borrowed = nullptr;        // else null
+  VoxelForm form;                        // of the borrowed voxels
 };
+
+// The voxels of a level as the kernels read them, each at its index: scale 1, offset 0.
+ImageView level_image(const PyramidLevel& level);
+// The levels without their values: what is left to know when the images are not needed any more.
+struct Pyramid;
+Pyramid without_values(const Pyramid& pyramid);
 
 struct PyramidSpec {
   double reduction = 1.7320508075688772;   // rho, 1 < rho <= 2
@@ -43,9 +54,15 @@ VoxelRange voxel_range(const VolumeView& volume, const Executor& executor, SimdT
 inline constexpr int64_t kMinLevelDim = 4;
 int max_levels(const std::array<int64_t, 3>& padded_dims, double reduction);
 
-// Builds levels 0 .. spec.levels. Errors: kInvalidArgument (reduction, window, level count too
-// deep for the size), kInvalidData (dims, a padded level of 2^31 voxels or more), kOutOfMemory.
-// The same bits for any executor and any target.
+// The value that a voxel of the volume with `value` has on I_0, the same bits: an iso-value between
+// voxels stays between them, one that is a voxel's value stays it.
+float base_value(const VolumeView& volume, const PyramidSpec& spec, double value);
+
+// Builds levels 0 .. spec.levels. I_0 borrows volume.voxels, which must outlive the pyramid; 32-bit
+// integers, and what has a window beyond the range of floats, become floats. Errors:
+// kInvalidArgument (reduction, window, level count too deep for the size), kInvalidData (dims, a
+// padded level of 2^31 voxels or more), kOutOfMemory. The same bits for any executor and any
+// target.
 Status build_pyramid(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
                      SimdTarget simd, Pyramid& pyramid);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "kernels/image_rows.h"
 #include "pyramid/buffer.h"
 #include "pyramid/guarded_run.h"
 
@@ -17,13 +18,16 @@ constexpr size_t kTilePlanes = 16;
 // together with the rows that stream through.
 constexpr size_t kWindowBytes = size_t{256} << 10;
 constexpr size_t kMinTileRows = 8;
+// Rows that are read at a time: as many as reduce_x takes at once, so that they stay in the first
+// cache.
+constexpr size_t kReadRows = 16;
 
 size_t divide_up(size_t a, size_t b) {
   return (a + b - 1) / b;
 }
 
 struct Reduction {
-  const float* in;
+  const ImageView& in;
   std::array<size_t, 3> in_dims;
   std::array<kernels::TapsView, 3> taps;
   std::array<size_t, 3> out_dims;
@@ -45,33 +49,57 @@ struct Tile {
   size_t row, row_end, plane, plane_end;
 };
 
-// The tile's rows of input plane z, reduced along X into `rows`, then along Y into `reduced`.
-void reduce_plane(const Reduction& r, const Tile& tile, size_t z, float* scratch, float* rows,
+// A tile's memory besides its window of planes.
+struct Scratch {
+  Buffer<float> columns;  // of reduce_x
+  Buffer<float> values;   // kReadRows rows of the image; not used where it holds them as they are
+  Buffer<float> rows;     // reduced along X
+};
+
+// Rows [y, y_end) of input plane z, reduced along X.
+void reduce_rows(const Reduction& r, size_t z, size_t y, size_t y_end, Scratch& scratch) {
+  const size_t width = r.in_dims[0];
+  const auto reduce = [&](const float* from, size_t rows, float* to) {
+    kernels::reduce_x(r.simd, r.taps[0], r.out_dims[0], from, width, width, rows, to, r.out_dims[0],
+                      scratch.columns.data());
+  };
+  if (r.in.form.type == ImageType::kUnit) {
+    const auto* voxels = static_cast<const float*>(r.in.data);
+    reduce(voxels + (z * r.in_dims[1] + y) * width, y_end - y, scratch.rows.data());
+    return;
+  }
+  for (size_t row = y; row < y_end; row += kReadRows) {
+    const size_t end = std::min(row + kReadRows, y_end);
+    kernels::image_rows(r.simd, r.in, static_cast<int64_t>(z), static_cast<int64_t>(row),
+                        static_cast<int64_t>(end), scratch.values.data());
+    reduce(scratch.values.data(), end - row, scratch.rows.data() + (row - y) * r.out_dims[0]);
+  }
+}
+
+// The tile's rows of input plane z, reduced along X, then along Y into `reduced`.
+void reduce_plane(const Reduction& r, const Tile& tile, size_t z, Scratch& scratch,
                   float* reduced) {
-  const size_t y = r.first_input(1, tile.row);
-  const size_t y_end = r.end_input(1, tile.row_end);
-  const float* from = r.in + (z * r.in_dims[1] + y) * r.in_dims[0];
-  kernels::reduce_x(r.simd, r.taps[0], r.out_dims[0], from, r.in_dims[0], r.in_dims[0], y_end - y,
-                    rows, r.out_dims[0], scratch);
-  kernels::reduce_y(r.simd, r.taps[1], tile.row, tile.row_end, rows, r.out_dims[0], r.out_dims[0],
-                    reduced, r.out_dims[0]);
+  reduce_rows(r, z, r.first_input(1, tile.row), r.end_input(1, tile.row_end), scratch);
+  kernels::reduce_y(r.simd, r.taps[1], tile.row, tile.row_end, scratch.rows.data(), r.out_dims[0],
+                    r.out_dims[0], reduced, r.out_dims[0]);
 }
 
 void reduce_tile(const Reduction& r, const Tile& tile) {
   const kernels::TapsView& along_z = r.taps[2];
   const auto taps = static_cast<size_t>(along_z.taps);
   const size_t plane_size = (tile.row_end - tile.row) * r.out_dims[0];
-  Buffer<float> scratch, rows, window;
-  scratch.resize_uninitialized(kernels::reduce_x_scratch(r.in_dims[0]));
-  rows.resize_uninitialized((r.end_input(1, tile.row_end) - r.first_input(1, tile.row)) *
-                            r.out_dims[0]);
+  Scratch scratch;
+  Buffer<float> window;
+  scratch.columns.resize_uninitialized(kernels::reduce_x_scratch(r.in_dims[0]));
+  scratch.values.resize_uninitialized(kReadRows * r.in_dims[0]);
+  scratch.rows.resize_uninitialized((r.end_input(1, tile.row_end) - r.first_input(1, tile.row)) *
+                                    r.out_dims[0]);
   window.resize_uninitialized(taps * plane_size);
   size_t next = 0;  // first input plane that is not in the window; plane z has place z % taps
   for (size_t k = tile.plane; k < tile.plane_end; ++k) {
     const size_t first = r.first_input(2, k);
     for (next = std::max(next, first); next < first + taps; ++next) {
-      reduce_plane(r, tile, next, scratch.data(), rows.data(),
-                   window.data() + next % taps * plane_size);
+      reduce_plane(r, tile, next, scratch, window.data() + next % taps * plane_size);
     }
     const float* planes[kernels::kMaxTaps] = {};
     for (size_t t = 0; t < taps; ++t) planes[t] = window.data() + (first + t) % taps * plane_size;
@@ -86,11 +114,11 @@ std::array<size_t, 3> to_sizes(const std::array<int64_t, 3>& dims) {
 
 }  // namespace
 
-bool reduce_image(const float* in, const std::array<int64_t, 3>& in_dims,
-                  const std::array<AxisTaps, 3>& taps, const std::array<int64_t, 3>& out_dims,
-                  const Executor& executor, SimdTarget simd, float* out) {
+bool reduce_image(const ImageView& in, const std::array<AxisTaps, 3>& taps,
+                  const std::array<int64_t, 3>& out_dims, const Executor& executor, SimdTarget simd,
+                  float* out) {
   Reduction r{in,
-              to_sizes(in_dims),
+              to_sizes({in.dims[0], in.dims[1], in.dims[2]}),
               {taps[0].view(), taps[1].view(), taps[2].view()},
               to_sizes(out_dims),
               simd,

@@ -28,6 +28,7 @@ inline Run make_run(std::string name, Volume volume, double iso, int levels) {
   return run;
 }
 
+// It borrows the run's volume.
 inline plc::Pyramid pyramid_of(const Run& run, const plc::Executor& executor = kSerial) {
   plc::Pyramid pyramid;
   const plc::Status status = plc::build_pyramid(run.volume.view(), run.pyramid, executor,

@@ -6,6 +6,7 @@
 
 #include "kernel_fixtures.h"
 #include "kernels/scalar.h"
+#include "typed_images.h"
 
 namespace {
 
@@ -51,7 +52,7 @@ double expected_sample(const ImageView& image, const Packed& p) {
       index[a] = cell[a] + up;
     }
     const int32_t at = index[0] + image.dims[0] * (index[1] + image.dims[1] * index[2]);
-    sum += weight * double{image.data[at]};
+    sum += weight * double{static_cast<const float*>(image.data)[at]};
   }
   return sum;
 }
@@ -185,5 +186,79 @@ TEST_CASE("the iso-potential force is equation (7), added to what is there", "[k
         }
       }
     }
+  }
+}
+
+TEMPLATE_TEST_CASE("a typed image is sampled and pulls as the same image in floats, bit for bit",
+                   "[kernels]", uint8_t, int16_t, uint16_t, float) {
+  const int32_t sizes[][3] = {{37, 23, 11}, {2, 2, 2}, {2, 19, 3}};
+  for (const auto& [m, n, p] : sizes) {
+    for (const int32_t pad : {0, 1, 6}) {
+      TypedImage<TestType> image(m, n, p, pad, 11);
+      image.view.scale[0] = 0.9F;
+      image.view.offset[1] = -3.25F;
+      const std::vector<float> values = image.values();
+      const ImageView unit = image.unit_view(values);
+      const uint32_t count = 320;
+      // The last are all inside, so that whole vectors are.
+      std::vector<Packed> position = places(count, 12);
+      for (uint32_t i = count / 2; i < count; ++i) {
+        const auto within = [](float c, int32_t size, float from) {
+          return from + std::fmod(std::abs(c), static_cast<float>(size - 1));
+        };
+        const float border = static_cast<float>(pad);
+        position[i].x = within(position[i].x, m, border) / 0.9F;
+        position[i].y = within(position[i].y, n, border) + 3.25F;
+        position[i].z = within(position[i].z, p, border);
+      }
+      const std::vector<float> normal = random_floats(count, -1, 1, 13);
+      for (const SimdTarget simd : plc::available_simd_targets()) {
+        CAPTURE(plc::simd_target_name(simd), m, n, p, pad);
+        std::vector<float> got(count), expected(count), twin(count);
+        kernels::sample_trilinear(simd, image.view, position.data(), 0, count - 3, got.data());
+        kernels::sample_trilinear(simd, unit, position.data(), 0, count - 3, expected.data());
+        scalar::sample_trilinear(image.view, position.data(), 0, count - 3, twin.data());
+        REQUIRE(first_difference(got, expected) == -1);
+        REQUIRE(first_difference(got, twin) == -1);
+        std::vector<float> pull(3 * count), unit_pull(3 * count);
+        const auto force = [&](const ImageView& view, std::vector<float>& f) {
+          kernels::iso_force(simd, view, position.data(), normal.data(), normal.data(),
+                             normal.data(), 1.5F, 0.4F, 0, count, f.data(), f.data() + count,
+                             f.data() + 2 * count);
+        };
+        force(image.view, pull);
+        force(unit, unit_pull);
+        REQUIRE(first_difference(pull, unit_pull) == -1);
+      }
+    }
+  }
+}
+
+TEST_CASE("no position makes sampling read beside typed voxels", "[kernels]") {
+  const float inf = std::numeric_limits<float>::infinity();
+  const std::vector<float> wild = {std::nanf(""), inf,   -inf, 3.4e38F, -3.4e38F, 2147483648.0F,
+                                   -1.0F,         0.99F, 2.5F, 6.5F,    7.0F,     7.5F};
+  std::vector<Packed> position;
+  for (const float x : wild) {
+    for (const float y : wild) {
+      for (const float z : wild) position.push_back({x, y, z, 0.0F});
+    }
+  }
+  const auto count = static_cast<uint32_t>(position.size());
+  const auto check = [&](const auto& image) {
+    const std::vector<float> values = image.values();
+    for (const SimdTarget simd : plc::available_simd_targets()) {
+      std::vector<float> got(count), expected(count);
+      kernels::sample_trilinear(simd, image.view, position.data(), 0, count, got.data());
+      kernels::sample_trilinear(simd, image.unit_view(values), position.data(), 0, count,
+                                expected.data());
+      REQUIRE(first_difference(got, expected) == -1);
+    }
+  };
+  for (const int32_t pad : {0, 6}) {
+    check(TypedImage<uint8_t>(2, 2, 2, pad, 1));
+    check(TypedImage<int16_t>(2, 2, 2, pad, 2));
+    check(TypedImage<uint16_t>(2, 2, 2, pad, 3));
+    check(TypedImage<float>(2, 2, 2, pad, 4));
   }
 }

@@ -5,6 +5,7 @@
 
 #include "kernel_fixtures.h"
 #include "pyramid/pyramid.h"
+#include "sample_levels.h"
 
 namespace {
 
@@ -16,10 +17,17 @@ using plc::VoxelType;
 
 const plc::SerialExecutor kSerial;
 
+// A pyramid with the voxels that it borrows.
+struct Built {
+  std::vector<float> voxels;
+  Pyramid pyramid;
+};
+
 // value(x, y, z) in [0,1] on a cube of `size` voxels, no padding.
 template <typename Value>
-Pyramid build(int64_t size, int levels, const Value& value) {
-  std::vector<float> voxels;
+Built build(int64_t size, int levels, const Value& value) {
+  Built built;
+  std::vector<float>& voxels = built.voxels;
   for (int64_t z = 0; z < size; ++z) {
     for (int64_t y = 0; y < size; ++y) {
       for (int64_t x = 0; x < size; ++x) {
@@ -28,14 +36,13 @@ Pyramid build(int64_t size, int levels, const Value& value) {
       }
     }
   }
-  Pyramid pyramid;
   PyramidSpec spec;
   spec.levels = levels;
   spec.pad_voxels = 0;
   REQUIRE(plc::build_pyramid({VoxelType::kF32, voxels.data(), {size, size, size}, {1, 1, 1.5}},
-                             spec, kSerial, plc::best_simd_target(), pyramid)
+                             spec, kSerial, plc::best_simd_target(), built.pyramid)
               .ok());
-  return pyramid;
+  return built;
 }
 
 std::vector<double> isos_of(const Pyramid& pyramid, double iso_0, bool above) {
@@ -78,12 +85,13 @@ double seen_at(const PyramidLevel& base, const PyramidLevel& level, const int64_
 // The part of the object of I_0 whose voxel centres the level's object holds.
 double covered_part(const Pyramid& pyramid, size_t h, double iso_0, double iso, bool above) {
   const PyramidLevel& base = pyramid.levels[0];
+  const std::vector<float> values = samples::values_of(base);
   int64_t object = 0, covered = 0;
   size_t i = 0;
   for (int64_t z = 0; z < base.dims[2]; ++z) {
     for (int64_t y = 0; y < base.dims[1]; ++y) {
       for (int64_t x = 0; x < base.dims[0]; ++x, ++i) {
-        const double own = double{base.values[i]};
+        const double own = double{values[i]};
         if (above ? own < iso_0 : own > iso_0) continue;
         const double seen = seen_at(base, pyramid.levels[h], {x, y, z});
         ++object;
@@ -97,30 +105,30 @@ double covered_part(const Pyramid& pyramid, size_t h, double iso_0, double iso, 
 }  // namespace
 
 TEST_CASE("a thin object stays in sight of all but a small part on every level", "[pyramid]") {
-  const Pyramid pyramid = build(60, 2, [](double x, double y, double z) {
+  const Built pyramid = build(60, 2, [](double x, double y, double z) {
     return ball(x, y, z, 29.5, 22) * (1.0 - ball(x, y, z, 29.5, 20.5)) * 0.9;
   });
   const double iso_0 = 0.45;
-  const std::vector<double> isos = isos_of(pyramid, iso_0, true);
+  const std::vector<double> isos = isos_of(pyramid.pyramid, iso_0, true);
   REQUIRE(isos.size() == 3);
   REQUIRE(isos[0] == iso_0);
   REQUIRE(isos[1] < 0.40);
   REQUIRE(isos[2] < isos[1]);
   for (size_t h = 1; h < 3; ++h) {
     CAPTURE(h, isos[h]);
-    REQUIRE(covered_part(pyramid, h, iso_0, isos[h], true) ==
+    REQUIRE(covered_part(pyramid.pyramid, h, iso_0, isos[h], true) ==
             Approx(1.0 - plc::kUncoveredPart).margin(0.002));
-    REQUIRE(covered_part(pyramid, h, iso_0, iso_0, true) < 0.9);
+    REQUIRE(covered_part(pyramid.pyramid, h, iso_0, iso_0, true) < 0.9);
   }
 }
 
 TEST_CASE("a dark object stays in sight as a bright one does", "[pyramid]") {
   const auto bright = [](double x, double y, double z) { return ball(x, y, z, 24, 3) * 0.8 + 0.1; };
-  const Pyramid above = build(48, 2, bright);
-  const Pyramid below =
+  const Built above = build(48, 2, bright);
+  const Built below =
       build(48, 2, [&](double x, double y, double z) { return 1.0 - bright(x, y, z); });
-  const std::vector<double> isos = isos_of(above, 0.4, true);
-  const std::vector<double> dark = isos_of(below, 0.6, false);
+  const std::vector<double> isos = isos_of(above.pyramid, 0.4, true);
+  const std::vector<double> dark = isos_of(below.pyramid, 0.6, false);
   REQUIRE(dark[0] == 0.6);
   for (size_t h = 1; h < isos.size(); ++h) {
     REQUIRE(isos[h] < 0.4);
@@ -130,19 +138,19 @@ TEST_CASE("a dark object stays in sight as a bright one does", "[pyramid]") {
 
 TEST_CASE("an object that a level shows anyway keeps its iso value", "[pyramid]") {
   // The whole object of I_0 lies deep inside of what is brighter than the value.
-  const Pyramid pyramid = build(40, 1, [](double x, double y, double z) {
+  const Built pyramid = build(40, 1, [](double x, double y, double z) {
     return 1.0 - std::hypot(x - 19.5, y - 19.5, z - 19.5) / 50.0;
   });
-  Pyramid brighter = pyramid;
+  Pyramid brighter = pyramid.pyramid;
   for (float& v : brighter.levels[1].values) v = std::min(1.0F, v + 0.1F);
   REQUIRE(isos_of(brighter, 0.7, true) == std::vector<double>{0.7, 0.7});
 }
 
 TEST_CASE("an image without the object leaves the iso value alone", "[pyramid]") {
-  const Pyramid dim = build(24, 2, [](double x, double, double) { return x / 100; });
-  REQUIRE(isos_of(dim, 0.5, true) == std::vector<double>{0.5, 0.5, 0.5});
-  const Pyramid bright = build(24, 2, [](double x, double, double) { return 0.7 + x / 100; });
-  REQUIRE(isos_of(bright, 0.5, false) == std::vector<double>{0.5, 0.5, 0.5});
+  const Built dim = build(24, 2, [](double x, double, double) { return x / 100; });
+  REQUIRE(isos_of(dim.pyramid, 0.5, true) == std::vector<double>{0.5, 0.5, 0.5});
+  const Built bright = build(24, 2, [](double x, double, double) { return 0.7 + x / 100; });
+  REQUIRE(isos_of(bright.pyramid, 0.5, false) == std::vector<double>{0.5, 0.5, 0.5});
   REQUIRE(isos_of(Pyramid{}, 0.5, true).empty());
 }
 
@@ -169,14 +177,14 @@ TEST_CASE("iso values stay strictly between zero and one even where all has fade
 }
 
 TEST_CASE("iso values do not depend on the target or the threads", "[pyramid]") {
-  const Pyramid pyramid = build(44, 2, [](double x, double y, double z) {
+  const Built pyramid = build(44, 2, [](double x, double y, double z) {
     return ball(x, y, z, 20, 9) * (0.6 + 0.4 * std::sin(x * y + z));
   });
   const std::vector<double> expected =
-      plc::covering_isos(pyramid, 0.5, true, 0.0, kSerial, plc::SimdTarget::kScalar);
+      plc::covering_isos(pyramid.pyramid, 0.5, true, 0.0, kSerial, plc::SimdTarget::kScalar);
   for (const plc::SimdTarget simd : plc::available_simd_targets()) {
     for (const unsigned threads : {1U, 4U}) {
-      REQUIRE(plc::covering_isos(pyramid, 0.5, true, 0.0, ThreadExecutor(threads), simd) ==
+      REQUIRE(plc::covering_isos(pyramid.pyramid, 0.5, true, 0.0, ThreadExecutor(threads), simd) ==
               expected);
     }
   }
@@ -184,11 +192,11 @@ TEST_CASE("iso values do not depend on the target or the threads", "[pyramid]") 
 
 TEST_CASE("no iso value of a level goes beyond the bound", "[pyramid]") {
   // A thin shell that all but fades away on the coarsest level.
-  const Pyramid pyramid = build(72, 3, [](double x, double y, double z) {
+  const Built pyramid = build(72, 3, [](double x, double y, double z) {
     return ball(x, y, z, 35.5, 28) * (1.0 - ball(x, y, z, 35.5, 26.5)) * 0.9;
   });
   const auto isos = [&](double bound) {
-    return plc::covering_isos(pyramid, 0.45, true, bound, kSerial, plc::best_simd_target());
+    return plc::covering_isos(pyramid.pyramid, 0.45, true, bound, kSerial, plc::best_simd_target());
   };
   REQUIRE(isos(0.0).back() < 0.3);
   REQUIRE(isos(0.3).back() == 0.3);

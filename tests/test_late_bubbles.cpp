@@ -5,16 +5,16 @@
 
 #include "engine/constants.h"
 #include "engine/state_hash.h"
-#include "engine/voxel_sides.h"
 #include "tests/sample_scenes.h"
+#include "tests/sample_sides.h"
 #include "tests/sample_surfaces.h"
 
 namespace {
 
-using plc::Buffer;
 using plc::LateBubbles;
 using plc::Mesh;
 using plc::Vec3;
+using plc::VoxelSet;
 using samples::Ball;
 using samples::Scene;
 
@@ -31,7 +31,7 @@ void surface_around(Mesh& mesh, const Ball& b) {
 }
 
 // Starts what is missed, and checks what is always so.
-LateBubbles start(Mesh& mesh, const Scene& scene, Buffer<uint8_t>& tried, int threads = 1,
+LateBubbles start(Mesh& mesh, const Scene& scene, VoxelSet& tried, int threads = 1,
                   bool above = true) {
   const plc::Schedule schedule(threads);
   LateBubbles started;
@@ -46,14 +46,13 @@ LateBubbles start(Mesh& mesh, const Scene& scene, Buffer<uint8_t>& tried, int th
 }
 
 LateBubbles start(Mesh& mesh, const Scene& scene) {
-  Buffer<uint8_t> tried;
+  VoxelSet tried;
   return start(mesh, scene, tried);
 }
 
 // Voxels on the wrong side, of those where the image is not nearly iso.
 size_t wrong_voxels(const Mesh& mesh, const Scene& scene) {
-  Buffer<uint8_t> inside;
-  plc::voxel_sides(mesh, scene.view(), samples::kSerial, inside);
+  const std::vector<uint8_t> inside = samples::sides_of(mesh, scene.view());
   size_t wrong = 0;
   for (size_t i = 0; i < inside.size(); ++i) {
     if (std::abs(scene.values[i] - kIso) < 0.2F) continue;
@@ -150,7 +149,7 @@ TEST_CASE("dark objects get bubbles where the image is below iso", "[late_bubble
   for (float& v : scene.values) v = 1 - v;
   Mesh mesh;
   surface_around(mesh, {12, 12, 12, 10});
-  Buffer<uint8_t> tried;
+  VoxelSet tried;
   const LateBubbles started = start(mesh, scene, tried, 1, false);
   CHECK(started.bubbles == 1);
   CHECK(started.cavities == 1);
@@ -197,13 +196,13 @@ TEST_CASE("what was tried once is not started again, though it is missed still",
   const Scene scene({kMain, {28, 12, 12, 4}});
   Mesh mesh;
   surface_around(mesh, kMain);
-  Buffer<uint8_t> tried;
+  VoxelSet tried;
   CHECK(start(mesh, scene, tried).bubbles == 1);
   Mesh again;
   surface_around(again, kMain);
   CHECK(start(again, scene, tried).bubbles == 0);
   // With a surface there nothing is missed any more either.
-  Buffer<uint8_t> fresh;
+  VoxelSet fresh;
   CHECK(start(mesh, scene, fresh).bubbles == 0);
 }
 
@@ -246,7 +245,7 @@ TEST_CASE("late bubbles have the same bits for any number of threads", "[late_bu
   for (const int threads : {1, 2, 3}) {
     Mesh mesh;
     surface_around(mesh, {12, 12, 12, 10});
-    Buffer<uint8_t> tried;
+    VoxelSet tried;
     volumes.push_back(start(mesh, scene, tried, threads).volume);
     hashes.push_back(plc::state_hash(mesh));
   }

@@ -285,7 +285,8 @@ TEST_CASE("a start has the same bits for any number of threads", "[level_start]"
   StartSpec bubbles = of(Init::kBubbles);
   bubbles.bubbles = {4, 3, 2};
   StartSpec mask = of(Init::kMask);
-  mask.mask = samples::pyramid_of(ball_run());
+  const samples::Run ball = ball_run();
+  mask.mask = samples::pyramid_of(ball);
   const StartSpec iso = of(Init::kIso), bubble = of(Init::kBubble), mesh = of(ball_in_voxels(9));
   for (const StartSpec* spec :
        std::initializer_list<const StartSpec*>{&seeds, &bubbles, &mask, &iso, &bubble, &mesh}) {

@@ -9,10 +9,11 @@
 
 namespace {
 
-using plc::Buffer;
 using plc::Mesh;
 using plc::Missed;
 using plc::MissedPlaces;
+using plc::Voxel;
+using plc::VoxelSet;
 using samples::Ball;
 using samples::Scene;
 
@@ -24,7 +25,7 @@ void surface_around(Mesh& mesh, const Ball& b) {
   samples::fill_mesh(mesh, samples::moved(samples::sphere(3), b.x, b.y, b.z, b.radius), 1);
 }
 
-MissedPlaces find(const Mesh& mesh, const Scene& scene, Buffer<uint8_t>& tried,
+MissedPlaces find(const Mesh& mesh, const Scene& scene, VoxelSet& tried,
                   float clearance = kClearance, float radius = kRadius) {
   return plc::find_missed_places(mesh, scene.view(), kIso, true, clearance, radius,
                                  samples::kSerial, tried);
@@ -32,14 +33,22 @@ MissedPlaces find(const Mesh& mesh, const Scene& scene, Buffer<uint8_t>& tried,
 
 MissedPlaces find(const Mesh& mesh, const Scene& scene, float clearance = kClearance,
                   float radius = kRadius) {
-  Buffer<uint8_t> tried;
+  VoxelSet tried;
   return find(mesh, scene, tried, clearance, radius);
 }
 
+std::vector<Voxel> all_of(const VoxelSet& set) {
+  std::vector<Voxel> all;
+  set.visit([&](const Voxel& v) { all.push_back(v); });
+  return all;
+}
+
+std::vector<Voxel> all_of(const MissedPlaces& places, Missed kind) {
+  return all_of(places.voxels[static_cast<size_t>(kind)]);
+}
+
 size_t voxels_of(const MissedPlaces& places, Missed kind) {
-  size_t count = 0;
-  for (size_t i = 0; i < places.kind.size(); ++i) count += places.is(i, kind) ? 1 : 0;
-  return count;
+  return all_of(places, kind).size();
 }
 
 constexpr size_t kPart = 0, kCavity = 1;
@@ -65,12 +74,11 @@ TEST_CASE("a ball beside the surface is one missed part, with all its voxels and
   surface_around(mesh, kMain);
   const MissedPlaces places = find(mesh, scene);
   CHECK(places.count == std::array<int64_t, 2>{1, 0});
-  size_t i = 0;
   for (int32_t z = 0; z < 24; ++z) {
     for (int32_t y = 0; y < 24; ++y) {
-      for (int32_t x = 0; x < 40; ++x, ++i) {
+      for (int32_t x = 0; x < 40; ++x) {
         const bool in = samples::norm(x - second.x, y - second.y, z - second.z) <= second.radius;
-        if (places.is(i, Missed::kPart) != in) FAIL("voxel " << x << " " << y << " " << z);
+        if (places.is({x, y, z}, Missed::kPart) != in) FAIL("voxel " << x << " " << y << " " << z);
       }
     }
   }
@@ -96,14 +104,14 @@ TEST_CASE("dark objects in bright images are told by the other side of iso", "[m
   Scene scene({kMain, second});
   Mesh mesh;
   surface_around(mesh, kMain);
-  Buffer<uint8_t> bright_tried;
+  VoxelSet bright_tried;
   const MissedPlaces bright = find(mesh, scene, bright_tried);
   for (float& v : scene.values) v = 1 - v;
-  Buffer<uint8_t> tried;
+  VoxelSet tried;
   const MissedPlaces dark = plc::find_missed_places(mesh, scene.view(), kIso, false, kClearance,
                                                     kRadius, samples::kSerial, tried);
   CHECK(dark.count == std::array<int64_t, 2>{1, 0});
-  CHECK(std::equal(dark.kind.begin(), dark.kind.end(), bright.kind.begin(), bright.kind.end()));
+  CHECK(all_of(dark, Missed::kPart) == all_of(bright, Missed::kPart));
 }
 
 TEST_CASE("what is within the clearance of a vertex is the surface's own matter",
@@ -177,11 +185,10 @@ TEST_CASE("a place that was tried is not found again, a new one is", "[missed_pl
   const Ball second{28, 12, 12, 4};
   Mesh mesh;
   surface_around(mesh, kMain);
-  Buffer<uint8_t> tried;
+  VoxelSet tried;
   const Scene scene({kMain, second});
   CHECK(find(mesh, scene, tried).count[kPart] == 1);
-  REQUIRE(tried.size() == scene.values.size());
-  CHECK(std::count(tried.begin(), tried.end(), uint8_t{1}) > 200);
+  CHECK(all_of(tried).size() > 200);
   const MissedPlaces again = find(mesh, scene, tried);
   CHECK(again.count[kPart] == 0);
   CHECK(voxels_of(again, Missed::kPart) == 0);
@@ -196,7 +203,7 @@ TEST_CASE("places left out for their size are not marked as tried", "[missed_pla
   const Scene scene({kMain, {28, 12, 12, 4}});
   Mesh mesh;
   surface_around(mesh, kMain);
-  Buffer<uint8_t> tried;
+  VoxelSet tried;
   CHECK(find(mesh, scene, tried, kClearance, 6).count[kPart] == 0);
   CHECK(find(mesh, scene, tried).count[kPart] == 1);
 }
@@ -230,18 +237,20 @@ TEST_CASE("missed places are the same for any number of threads", "[missed_place
   const Scene scene({{12, 12, 12, 10}, {12, 12, 12, -5}, {30, 8, 8, 4}, {31, 18, 18, 3}});
   Mesh mesh;
   surface_around(mesh, {12, 12, 12, 10});
-  Buffer<uint8_t> tried;
+  VoxelSet tried;
   const MissedPlaces one = find(mesh, scene, tried);
   CHECK(one.count == std::array<int64_t, 2>{2, 1});
   for (const int threads : {2, 3}) {
     const plc::Schedule schedule(threads);
-    Buffer<uint8_t> marks;
+    VoxelSet marks;
     const MissedPlaces places = plc::find_missed_places(mesh, scene.view(), kIso, true, kClearance,
                                                         kRadius, schedule, marks);
     CHECK(places.count == one.count);
     CHECK(places.low == one.low);
     CHECK(places.high == one.high);
-    CHECK(std::equal(places.kind.begin(), places.kind.end(), one.kind.begin(), one.kind.end()));
-    CHECK(std::equal(marks.begin(), marks.end(), tried.begin(), tried.end()));
+    for (const Missed kind : {Missed::kPart, Missed::kCavity}) {
+      CHECK(all_of(places, kind) == all_of(one, kind));
+    }
+    CHECK(all_of(marks) == all_of(tried));
   }
 }

@@ -8,6 +8,7 @@
 #include "kernel_fixtures.h"
 #include "limited_memory.h"
 #include "reference_pyramid.h"
+#include "sample_levels.h"
 
 namespace {
 
@@ -55,7 +56,8 @@ Pyramid must_build(const VolumeView& volume, const PyramidSpec& spec, const plc:
 }
 
 // V_h at a point of real space: trilinear between the centres (10), borders replicated.
-double real_image(const PyramidLevel& level, const std::array<double, 3>& point) {
+double real_image(const PyramidLevel& level, const std::vector<float>& values,
+                  const std::array<double, 3>& point) {
   int64_t cell[3];
   double fraction[3];
   for (size_t a = 0; a < 3; ++a) {
@@ -72,14 +74,17 @@ double real_image(const PyramidLevel& level, const std::array<double, 3>& point)
       weight *= up == 1 ? fraction[a] : 1.0 - fraction[a];
       at[a] = std::clamp<int64_t>(cell[a] + up, 0, level.dims[static_cast<size_t>(a)] - 1);
     }
-    sum += weight * double{level.values[static_cast<size_t>(
-                        at[0] + level.dims[0] * (at[1] + level.dims[1] * at[2]))]};
+    sum +=
+        weight *
+        double{
+            values[static_cast<size_t>(at[0] + level.dims[0] * (at[1] + level.dims[1] * at[2]))]};
   }
   return sum;
 }
 
 // Eq. (12) by its definition: 125 points, not separated.
-double convolution(const PyramidLevel& from, const PyramidLevel& to, const Dims& voxel) {
+double convolution(const PyramidLevel& from, const std::vector<float>& values,
+                   const PyramidLevel& to, const Dims& voxel) {
   const double kernel[5] = {1, 4, 6, 4, 1};
   double sum = 0;
   for (int p = -2; p <= 2; ++p) {
@@ -90,7 +95,8 @@ double convolution(const PyramidLevel& from, const PyramidLevel& to, const Dims&
         for (size_t a = 0; a < 3; ++a) {
           point[a] = (static_cast<double>(voxel[a]) + 0.5) * to.voxel[a] + offset[a] * from.unit;
         }
-        sum += kernel[m + 2] * kernel[n + 2] * kernel[p + 2] / 4096.0 * real_image(from, point);
+        sum += kernel[m + 2] * kernel[n + 2] * kernel[p + 2] / 4096.0 *
+               real_image(from, values, point);
       }
     }
   }
@@ -98,12 +104,14 @@ double convolution(const PyramidLevel& from, const PyramidLevel& to, const Dims&
 }
 
 void require_definition(const PyramidLevel& from, const PyramidLevel& to) {
+  const std::vector<float> values = samples::values_of(from);
   double worst = 0;
   size_t i = 0;
   for (int64_t z = 0; z < to.dims[2]; ++z) {
     for (int64_t y = 0; y < to.dims[1]; ++y) {
       for (int64_t x = 0; x < to.dims[0]; ++x, ++i) {
-        worst = std::max(worst, std::abs(double{to.values[i]} - convolution(from, to, {x, y, z})));
+        worst = std::max(worst,
+                         std::abs(double{to.values[i]} - convolution(from, values, to, {x, y, z})));
       }
     }
   }
@@ -166,8 +174,9 @@ TEST_CASE("the pyramid is (10) to (12) from the volume up, also on odd sizes of 
     for (const PyramidLevel& level : pyramid.levels) {
       CAPTURE(reduction, level.dims[0], level.dims[1], level.dims[2]);
       REQUIRE(level.dims == expected.dims);
+      const std::vector<float> values = samples::values_of(level);
       for (size_t i = 0; i < expected.values.size(); ++i) {
-        REQUIRE(double{level.values[i]} == Approx(expected.values[i]).margin(2e-6));
+        REQUIRE(double{values[i]} == Approx(expected.values[i]).margin(2e-6));
       }
       expected = reference::next_level(expected, extent, reduction, unit);
       unit *= reduction;
@@ -188,7 +197,7 @@ TEST_CASE("sizes and units follow (11) and the real size stays", "[pyramid]") {
     const PyramidLevel& level = pyramid.levels[h];
     REQUIRE(level.dims == expected[h]);
     REQUIRE(level.unit == Approx(0.5 * std::pow(kSqrt3, h)).epsilon(1e-14));
-    REQUIRE(level.values.size() ==
+    REQUIRE(samples::values_of(level).size() ==
             static_cast<size_t>(level.dims[0] * level.dims[1] * level.dims[2]));
     const double size[3] = {20.0, 22.5, 40.0};
     for (size_t a = 0; a < 3; ++a) {
@@ -209,9 +218,8 @@ TEST_CASE("the pyramid has the same bits for every target and any number of thre
       const Pyramid got = must_build(volume, spec, ThreadExecutor(threads), simd);
       for (size_t h = 0; h < got.levels.size(); ++h) {
         CAPTURE(plc::simd_target_name(simd), threads, h);
-        const plc::Buffer<float>& a = got.levels[h].values;
-        const plc::Buffer<float>& b = expected.levels[h].values;
-        REQUIRE(first_difference({a.begin(), a.end()}, {b.begin(), b.end()}) == -1);
+        REQUIRE(first_difference(samples::values_of(got.levels[h]),
+                                 samples::values_of(expected.levels[h])) == -1);
       }
     }
   }
@@ -235,10 +243,68 @@ TEMPLATE_TEST_CASE("equal voxels of any type make equal pyramids", "[pyramid]", 
         must_build({VoxelType::kU8, bytes.data(), dims, {1, 1, 1}}, spec, kSerial, simd);
     const Pyramid got = must_build({type, voxels.data(), dims, {1, 1, 1}}, spec, kSerial, simd);
     for (size_t h = 0; h < 2; ++h) {
-      const plc::Buffer<float>& a = got.levels[h].values;
-      const plc::Buffer<float>& b = expected.levels[h].values;
-      REQUIRE(first_difference({a.begin(), a.end()}, {b.begin(), b.end()}) == -1);
+      REQUIRE(first_difference(samples::values_of(got.levels[h]),
+                               samples::values_of(expected.levels[h])) == -1);
     }
+  }
+}
+
+TEST_CASE("I_0 is the caller's own volume, read where it lies", "[pyramid]") {
+  const Dims dims{17, 14, 15};
+  const std::vector<uint16_t> voxels = make_voxels<uint16_t>(dims);
+  PyramidSpec spec;
+  spec.levels = 1;
+  spec.window_high = 200;
+  Pyramid pyramid = must_build({VoxelType::kU16, voxels.data(), dims, {1, 1, 1}}, spec, kSerial,
+                               plc::best_simd_target());
+  REQUIRE(pyramid.levels[0].borrowed == voxels.data());
+  REQUIRE(pyramid.levels[0].values.empty());
+  REQUIRE_FALSE(pyramid.levels[1].values.empty());
+  REQUIRE(plc::level_image(pyramid.levels[0]).data == voxels.data());
+  // Neither 32-bit integers nor windows that floats do not hold can be.
+  const std::vector<int32_t> integers(voxels.begin(), voxels.end());
+  pyramid = must_build({VoxelType::kI32, integers.data(), dims, {1, 1, 1}}, spec, kSerial,
+                       plc::best_simd_target());
+  REQUIRE(pyramid.levels[0].borrowed == nullptr);
+  spec.window_high = 1e35;
+  const std::vector<float> floats(voxels.begin(), voxels.end());
+  pyramid = must_build({VoxelType::kF32, floats.data(), dims, {1, 1, 1}}, spec, kSerial,
+                       plc::best_simd_target());
+  REQUIRE(pyramid.levels[0].borrowed == nullptr);
+}
+
+TEST_CASE("a voxel's value is itself on I_0, whatever it is asked as", "[pyramid]") {
+  const Dims dims{16, 16, 256};
+  std::vector<int16_t> voxels;
+  for (int i = 0; i < 65536; ++i) voxels.push_back(static_cast<int16_t>(i - 32768));
+  const VolumeView volume{VoxelType::kI16, voxels.data(), dims, {1, 1, 1}};
+  PyramidSpec spec;
+  spec.levels = 0;
+  spec.pad_voxels = 0;
+  spec.window_low = -105.506348;
+  spec.window_high = 1418.877197;
+  const std::vector<float> values =
+      samples::values_of(must_build(volume, spec, kSerial, plc::best_simd_target()).levels[0]);
+  for (size_t i = 0; i < voxels.size(); ++i) {
+    const float iso = plc::base_value(volume, spec, voxels[i]);
+    if (values[i] != iso) FAIL(voxels[i]);
+  }
+}
+
+TEST_CASE("without its values a pyramid keeps its sizes", "[pyramid]") {
+  const std::vector<uint8_t> voxels = make_voxels<uint8_t>({17, 14, 15});
+  PyramidSpec spec;
+  spec.levels = 1;
+  const Pyramid whole = must_build({VoxelType::kU8, voxels.data(), {17, 14, 15}, {1, 2, 1}}, spec,
+                                   kSerial, plc::best_simd_target());
+  const Pyramid bare = plc::without_values(whole);
+  REQUIRE(bare.levels.size() == 2);
+  for (size_t h = 0; h < 2; ++h) {
+    REQUIRE(bare.levels[h].dims == whole.levels[h].dims);
+    REQUIRE(bare.levels[h].voxel == whole.levels[h].voxel);
+    REQUIRE(bare.levels[h].unit == whole.levels[h].unit);
+    REQUIRE(bare.levels[h].values.empty());
+    REQUIRE(bare.levels[h].borrowed == nullptr);
   }
 }
 
@@ -335,6 +401,16 @@ TEST_CASE("a volume that cannot be an image is refused", "[pyramid]") {
 }
 
 #if FIXTURES_CAN_LIMIT_MEMORY
+TEST_CASE("a pyramid of bytes takes the memory of its coarse levels alone", "[pyramid]") {
+  const std::vector<uint8_t> voxels(size_t{320} * 320 * 320, 7);
+  PyramidSpec spec;
+  spec.window_high = 10;
+  const MemoryLimit limit(size_t{96} << 20);  // they take 34 MB; I_0 in floats would be 146
+  const Pyramid pyramid = must_build({VoxelType::kU8, voxels.data(), {320, 320, 320}, {1, 1, 1}},
+                                     spec, kSerial, plc::best_simd_target());
+  REQUIRE(pyramid.levels.size() == 4);
+}
+
 TEST_CASE("a pyramid beyond the memory is refused, not thrown", "[pyramid]") {
   const MemoryLimit limit(size_t{1} << 30);
   const uint8_t voxel = 0;  // memory runs out before any voxel is read

@@ -5,6 +5,7 @@
 #include "kernel_fixtures.h"
 #include "kernels/scalar.h"
 #include "limited_memory.h"
+#include "typed_images.h"
 
 namespace {
 
@@ -15,6 +16,13 @@ using Dims = std::array<int64_t, 3>;
 
 size_t volume(const Dims& dims) {
   return static_cast<size_t>(dims[0] * dims[1] * dims[2]);
+}
+
+plc::ImageView view_of(const std::vector<float>& values, const Dims& dims) {
+  plc::ImageView view;
+  view.data = values.data();
+  for (size_t a = 0; a < 3; ++a) view.dims[a] = static_cast<int32_t>(dims[a]);
+  return view;
 }
 
 // Appendix A as it stands: whole images G and H between the passes.
@@ -54,7 +62,7 @@ void require_tiles_do_not_show(const Dims& from, const Dims& to,
                                           static_cast<const plc::Executor*>(&threads)}) {
       CAPTURE(plc::simd_target_name(simd), executor == &serial);
       std::vector<float> got(volume(to), kUntouched);
-      REQUIRE(plc::reduce_image(in.data(), from, taps, to, *executor, simd, got.data()));
+      REQUIRE(plc::reduce_image(view_of(in, from), taps, to, *executor, simd, got.data()));
       REQUIRE(first_difference(got, expected) == -1);
     }
   }
@@ -80,6 +88,28 @@ TEST_CASE("two voxels reduce to one", "[pyramid]") {
   require_tiles_do_not_show({2, 2, 2}, {1, 1, 1}, {1.0, 1.0, 1.0});
 }
 
+TEMPLATE_TEST_CASE("a typed image is reduced as the same image in floats, bit for bit", "[pyramid]",
+                   uint8_t, int16_t, uint16_t, float) {
+  for (const int32_t pad : {0, 6}) {
+    const TypedImage<TestType> image(71, 45, 38, pad, 5);
+    const Dims from{image.view.dims[0], image.view.dims[1], image.view.dims[2]};
+    const Dims to{from[0] / 2, from[1] * 10 / 17, from[2] * 10 / 17};
+    std::array<plc::AxisTaps, 3> taps;
+    for (size_t a = 0; a < 3; ++a) taps[a] = plc::make_axis_taps(from[a], to[a], 0.9);
+    const std::vector<float> values = image.values();
+    std::vector<float> expected(volume(to));
+    const ThreadExecutor threads(2);
+    REQUIRE(plc::reduce_image(image.unit_view(values), taps, to, threads, SimdTarget::kScalar,
+                              expected.data()));
+    for (const SimdTarget simd : plc::available_simd_targets()) {
+      CAPTURE(plc::simd_target_name(simd), pad);
+      std::vector<float> got(volume(to), kUntouched);
+      REQUIRE(plc::reduce_image(image.view, taps, to, threads, simd, got.data()));
+      REQUIRE(first_difference(got, expected) == -1);
+    }
+  }
+}
+
 TEST_CASE("a white image stays within one", "[pyramid]") {
   const Dims from{40, 40, 40}, to{23, 23, 23};
   std::array<plc::AxisTaps, 3> taps;
@@ -88,7 +118,7 @@ TEST_CASE("a white image stays within one", "[pyramid]") {
   std::vector<float> out(volume(to));
   const plc::SerialExecutor serial;
   REQUIRE(
-      plc::reduce_image(in.data(), from, taps, to, serial, plc::best_simd_target(), out.data()));
+      plc::reduce_image(view_of(in, from), taps, to, serial, plc::best_simd_target(), out.data()));
   for (const float value : out) {
     REQUIRE(value <= 1.0F);
     REQUIRE(value > 0.999999F);
@@ -105,6 +135,6 @@ TEST_CASE("a tile without memory for its rows is reported", "[pyramid]") {
   const plc::SerialExecutor serial;
   const MemoryLimit limit(size_t{64} << 20);  // transposed rows take 256 MB
   REQUIRE_FALSE(
-      plc::reduce_image(in.data(), from, taps, to, serial, SimdTarget::kScalar, out.data()));
+      plc::reduce_image(view_of(in, from), taps, to, serial, SimdTarget::kScalar, out.data()));
 }
 #endif

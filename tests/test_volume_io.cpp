@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "tests/limited_memory.h"
 #include "tests/sample_files.h"
 #include "tests/tool_fixtures.h"
 
@@ -153,6 +154,34 @@ TEST_CASE("What is written as NRRD or MetaImage is read back bit for bit", "[vol
   check_round_trip<int32_t>(PLC_I32);
   check_round_trip<float>(PLC_F32);
 }
+
+TEST_CASE("NIfTI whose values are scaled from what is stored has the values", "[volume_io]") {
+  const fixtures::Folder folder;
+  std::vector<int16_t> stored = ramp<int16_t>();
+  std::string file = samples::nifti({5, 4, 3}, 4, 16, samples::raw(stored));
+  samples::put_at(file, 112, 0.5F);  // slope
+  samples::put_at(file, 116, 3.0F);  // intercept
+  folder.put("a.nii", file);
+  std::vector<float> expected;
+  for (const int16_t value : stored) expected.push_back(0.5F * static_cast<float>(value) + 3);
+  const LoadedVolume volume = read_volume(folder / "a.nii");
+  CHECK(volume.image.type == PLC_F32);
+  CHECK(same_bits(voxels<float>(volume), expected));
+}
+
+#if FIXTURES_CAN_LIMIT_MEMORY
+TEST_CASE("plain files are read into the volume's own memory, once", "[volume_io]") {
+  const fixtures::Folder folder;
+  const std::string bytes(size_t{400} * 400 * 400, 'v');
+  folder.put("a.nii", samples::nifti({400, 400, 400}, 2, 8, bytes));
+  folder.put("a.nrrd", nrrd("type: uint8\ndimension: 3\nsizes: 400 400 400\nencoding: raw", bytes));
+  for (const char* const name : {"a.nii", "a.nrrd"}) {
+    CAPTURE(name);
+    const fixtures::MemoryLimit limit(size_t{100} << 20);  // the voxels are 61 MB
+    CHECK(read_volume(folder / name).bytes.size() == bytes.size());
+  }
+}
+#endif
 
 TEST_CASE("NIfTI keeps the engine's types and converts the others", "[volume_io]") {
   check_nifti<uint8_t, uint8_t>(2, PLC_U8);

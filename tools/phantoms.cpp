@@ -90,32 +90,32 @@ std::vector<double> Canvas::field(double value) const {
   return std::vector<double>(count, value);
 }
 
-LoadedVolume Canvas::volume(const std::vector<double>& field) const {
+LoadedVolume Canvas::made(const std::function<double(size_t)>& next) const {
   LoadedVolume result = make_volume(name, type, size);
   std::copy(spacing, spacing + 3, result.image.spacing);
   const double scale = full_scale(type);
   const size_t bytes = voxel_size(type);
+  const size_t count = result.bytes.size() / bytes;
   Random random(seed ^ 0x6e6f697365U);  // apart from the shapes' numbers
-  for (size_t i = 0; i < field.size(); ++i) {
+  for (size_t i = 0; i < count; ++i) {
+    const double value = next(i);
     const double added = noise > 0 ? noise * random.normal() : 0;
-    store(type, scale * (field[i] + added), result.bytes.data() + i * bytes);
+    store(type, scale * (value + added), result.bytes.data() + i * bytes);
   }
   return result;
 }
 
+LoadedVolume Canvas::volume(const std::vector<double>& field) const {
+  return made([&](size_t voxel) { return field[voxel]; });
+}
+
 LoadedVolume Canvas::volume(const std::function<double(const Point&)>& value) const {
-  std::vector<double> values = field(0);
-  size_t voxel = 0;
-  for (int64_t k = 0; k < size[2]; ++k) {
-    for (int64_t j = 0; j < size[1]; ++j) {
-      for (int64_t i = 0; i < size[0]; ++i) {
-        values[voxel++] =
-            value({static_cast<double>(i) * spacing[0], static_cast<double>(j) * spacing[1],
-                   static_cast<double>(k) * spacing[2]});
-      }
-    }
-  }
-  return volume(values);
+  int64_t at[3] = {-1, 0, 0};  // x fastest
+  return made([&](size_t) {
+    for (int axis = 0; axis < 3 && ++at[axis] == size[axis] && axis < 2; ++axis) at[axis] = 0;
+    return value({static_cast<double>(at[0]) * spacing[0], static_cast<double>(at[1]) * spacing[1],
+                  static_cast<double>(at[2]) * spacing[2]});
+  });
 }
 
 int checked_count(const char* name, const char* what, const std::optional<int>& value, int fallback,

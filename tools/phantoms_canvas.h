@@ -35,9 +35,14 @@ struct Canvas {
 
   // The volume with the field's values and the noise, in units of full scale.
   LoadedVolume volume(const std::vector<double>& field) const;
-  // The same of a function of position (mm from the centre of the first voxel).
+  // The same of a function of position (mm from the centre of the first voxel), called once for
+  // every voxel, x fastest; no field is held.
   LoadedVolume volume(const std::function<double(const Point&)>& value) const;
   std::string name;
+
+ private:
+  // Of next(voxel), called for every voxel, x fastest.
+  LoadedVolume made(const std::function<double(size_t)>& next) const;
 };
 
 // options.count or options.depth, checked.

@@ -152,6 +152,7 @@ Json make_report(const plc_context* context, const plc_image& image, const plc_s
           {"seconds",
            {{"read", timings.read},
             {"pyramid", pyramid},
+            {"images", plc_surface_image_seconds(surface)},
             {"evolution", evolution},
             {"write", timings.write},
             {"total", timings.total}}},

@@ -152,7 +152,8 @@ LoadedVolume read_itk_volume(const std::string& path, ItkFormat format) {
   const ItkHeader header = checked_header(path, read_itk_header(path, format));
   check_file_size(path, format, header);
   std::vector<std::byte> voxels = allocate_voxels(path, header);
-  read_itk_voxels(path, format, header, voxels.data());
+  const bool plain = format == ItkFormat::kNifti && read_plain_nifti(path, header, voxels.data());
+  if (!plain) read_itk_voxels(path, format, header, voxels.data());
   return volume_from(path, header, std::move(voxels));
 }
 

@@ -15,6 +15,10 @@ LoadedVolume read_itk_volume(const std::string& path, ItkFormat format);
 // names (numbers by value).
 LoadedVolume read_folder(const std::string& path);
 
+// The voxels of an uncompressed NIfTI-1 file whose values are what is stored, little endian; false,
+// and nothing is read, for any other. Failure where the file ends early.
+bool read_plain_nifti(const std::string& path, const ItkHeader& header, std::byte* voxels);
+
 // Voxels of any type as one the engine takes: i8 as i16; u32, i64, u64 as i32 where all fit, else
 // as f32; f64 as f32; the others as they are. Geometry from the header (its first three axes).
 LoadedVolume volume_from(const std::string& path, const ItkHeader& header,
