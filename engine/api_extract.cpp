@@ -186,6 +186,7 @@ class Extraction {
     const bool above = p.inside_below == 0;
     if (std::isnan(p.iso)) {
       spec_.isos.assign(pyramid_.levels.size(), NAN);
+      std::fill_n(p.level_iso, spec_.isos.size(), NAN);
     } else if (p.level_iso_count == 0) {
       const double iso = base_iso(p.iso);
       spec_.isos = covering_isos(images_, iso, above, level_iso_bound(p, background),

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "kernel_fixtures.h"
+#include "kernels/image_value.h"
 #include "pyramid/pyramid.h"
 
 namespace {
@@ -44,6 +45,31 @@ TEST_CASE("the base image is the volume in a border of the pad value", "[pyramid
                     Approx(expected).margin(3e-7));
           }
         }
+      }
+    }
+  }
+}
+
+TEST_CASE("a voxel's value is itself on I_0, copied or borrowed, in every type", "[pyramid]") {
+  std::vector<int16_t> voxels;
+  for (int i = 0; i < 65536; ++i) voxels.push_back(static_cast<int16_t>(i - 32768));
+  const std::vector<int32_t> integers(voxels.begin(), voxels.end());
+  const VolumeView volume{VoxelType::kI16, voxels.data(), {16, 16, 256}, {1, 1, 1}};
+  const VolumeView wide{VoxelType::kI32, integers.data(), {16, 16, 256}, {1, 1, 1}};
+  const plc::Window window{-105.506348, 1 / (1418.877197 + 105.506348)};
+  const plc::VoxelForm form = plc::borrowed_form(volume, window, 0, 0);
+  REQUIRE(form.type == plc::ImageType::kI16);
+  REQUIRE(plc::borrowed_form(wide, window, 0, 0).type == plc::ImageType::kUnit);
+  const plc::SerialExecutor serial;
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    std::vector<float> copy(voxels.size()), other(voxels.size());
+    plc::make_base_image(volume, window, 0, 0, serial, simd, copy.data());
+    plc::make_base_image(wide, window, 0, 0, serial, simd, other.data());
+    REQUIRE(first_difference(copy, other) == -1);
+    for (size_t i = 0; i < voxels.size(); ++i) {
+      const float value = plc::voxel_value(form, voxels[i]);
+      if (copy[i] != value || plc::window_value(volume, window, voxels[i]) != value) {
+        FAIL(voxels[i]);
       }
     }
   }

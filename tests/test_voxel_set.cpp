@@ -14,7 +14,8 @@ using plc::VoxelSet;
 constexpr int32_t kDims[3] = {150, 61, 5};  // rows across words and blocks
 
 size_t index_of(const Voxel& v) {
-  return static_cast<size_t>((v[2] * kDims[1] + v[1]) * kDims[0] + v[0]);
+  const auto size = [](int32_t n) { return static_cast<size_t>(n); };
+  return (size(v[2]) * size(kDims[1]) + size(v[1])) * size(kDims[0]) + size(v[0]);
 }
 
 // Some clusters and single voxels, with their indices.
