@@ -19,9 +19,9 @@ check() {
 declare -A title=([fine]=coarse_to_fine [late]=coarse_to_fine_late)
 for name in fine late; do
   measure "${title[$name]}" s "$name" '.seconds | .pyramid + .evolution'
-  # Of the finest level; its vertices at the end stand for those of all its iterations.
-  measure "${title[$name]}_dynamics" ns "$name" \
-    '.levels[-1] | .seconds.dynamics * 1e9 / .iterations / .vertices'
+  # Of the finest level, over the vertices that its iterations had.
+  moves=$(awk -F, '$2 == 0 { sum += $4 } END { print sum }' "$dir/$name.csv")
+  measure "${title[$name]}_dynamics" ns "$name" ".levels[-1].seconds.dynamics * 1e9 / $moves"
   levels "$name"
   check "$name"
 done
