@@ -81,11 +81,11 @@ set multiplot layout 1, 3
 set key bottom right
 set xlabel 'threads'
 set title 'times as fast as one thread, finest level'
-set xrange [0.8:*]; set yrange [0:*]
+set xrange [0.8:*]; set yrange [0:*]; set offsets 0, 0.2, 0, 0
 set xtics 1
 plot '$data/threads' using 1:2:3:4 with yerrorbars lt 1 pt 7 notitle, '' using 1:2 with lines lt 1 notitle, \
   x with lines lt 4 dt 2 title 'ideal'
-set xrange [*:*]
+set xrange [*:*]; set offsets 0, 0, 0, 0
 set logscale x; set xtics auto; set format x '10^{%L}'
 set xlabel 'vertices'
 set title 'ns per vertex and iteration, one thread'
@@ -93,6 +93,7 @@ set key center right
 plot '$data/growth' using 1:2:3:4 with yerrorbars lt 1 pt 7 notitle, '' using 1:2 with lines lt 1 title 'all', \
   '' using 1:5 with linespoints lt 2 pt 5 title 'topology', '' using 1:6 with linespoints lt 3 pt 9 title 'dynamics'
 set title 'bytes per vertex'
+set key top right
 plot '$data/growth' using 1:7 with linespoints lt 1 pt 7 notitle, 250 with lines lt 4 dt 2 title 'target'
 END
 fi
@@ -107,16 +108,16 @@ rows peers '
      ($d.peers[] | select($d[.].pyramid | not) | {title: $d[.].title, m: $m[.], ours: 4})]
   | map(select(.m)) | sort_by(-.m.median)[] | "\"\(.title)\" \(.m.median) \(.m.min) \(.m.max) \(.ours)"'
 if [ -s "$data/peers" ]; then
-  plot peers 900 $((110 + 34 * $(wc -l <"$data/peers"))) <<END
+  plot peers 1000 $((110 + 34 * $(wc -l <"$data/peers"))) <<END
 set title 'Bone of a head CT'
 unset key; unset grid
 set grid x
 set logscale x
 set xlabel 's'
-set xrange [0.1:*]
+set xrange [0.03:*]
 set yrange [-0.6:$(wc -l <"$data/peers") - 0.4]
-set lmargin 42
-plot '$data/peers' using 2:0:(0.1):2:(\$0 - 0.36):(\$0 + 0.36):5:ytic(1) with boxxyerror lc variable, \
+set lmargin 58
+plot '$data/peers' using 2:0:(0.03):2:(\$0 - 0.36):(\$0 + 0.36):5:ytic(1) with boxxyerror lc variable, \
   '' using 2:0:3:4 with xerrorbars lt -1 pt 0
 END
 fi
