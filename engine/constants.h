@@ -25,6 +25,13 @@ inline constexpr double kUnitPerDelta = 1.2;
 inline constexpr float kCheckPath = 0.1F;
 inline constexpr int kCheckPeriod = 50;
 
+// ---- spatial hash ---------------------------------------------------------------------------
+
+// Size of a cell, in delta.
+inline constexpr float kHashCell = 3.0F;
+// Built anew when more than one in so many vertices would have been entered a second time.
+inline constexpr uint32_t kHashInsertions = 4;
+
 // ---- resolution (figure 9) ------------------------------------------------------------------
 
 // What makes the paper's loop finite: what is left over waits for the next iteration.

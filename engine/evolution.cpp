@@ -32,7 +32,10 @@ Status Evolution::iterate(const Guide& guide, Seconds& seconds, OperationCounts&
   if (Status s = dynamics_.step(guide, seconds); !s.ok()) return s;
   const double moved = now();
   const auto& due = resolution_.take_due(false);
-  counts.reverted += guard_.take_back(dynamics_.before(), due, resolution_.hash());
+  guard_.assess(due, resolution_.surroundings().at_risk());
+  back_.clear();
+  counts.reverted += guard_.take_back(dynamics_.before(), resolution_.hash(), back_);
+  resolution_.add_due(back_);
   resolution_.run(++iteration_, counts);
   assert(sound(mesh_, schedule_));
   const double end = now();

@@ -34,6 +34,7 @@ class Evolution {
   Dynamics dynamics_;
   MotionGuard guard_;
   Resolution resolution_;
+  std::vector<uint32_t> back_;  // vertices that the guard has taken back
   uint32_t iteration_ = 0;
 };
 

@@ -12,7 +12,7 @@ namespace plc {
 namespace {
 
 // Vertices and nodes per task.
-constexpr size_t kVertexBlock = 1024;
+constexpr size_t kVertexBlock = 512;
 constexpr size_t kNodeBlock = 128;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -60,26 +60,45 @@ void MeetingSearch::set_lane(Boxes& b, uint32_t k, const Box& box) {
   }
 }
 
+// The marked vertices and their neighbours; all vertices where there are no marks.
+void MeetingSearch::list_vertices(const Mesh& mesh) {
+  for (const uint32_t v : vertices_) listed_[v] = 0;
+  vertices_.clear();
+  listed_.resize(mesh.slots);
+  const auto list = [&](uint32_t v) {
+    if (listed_[v] == 0) vertices_.push_back(v);
+    listed_[v] = 1;
+  };
+  for (uint32_t v = 0; v < mesh.slots; ++v) {
+    if (!mesh.marked(v) || mesh.rings.valence[v] == 0) continue;
+    list(v);
+    if (mesh.marks == nullptr) continue;
+    for (uint32_t k = 0; k < mesh.rings.valence[v]; ++k) list(mesh.rings.slot(v, k));
+  }
+  std::sort(vertices_.begin(), vertices_.end());
+}
+
 void MeetingSearch::list_faces(const Mesh& mesh, const Executor& executor) {
+  // Each face from the first of its corners that is listed.
   const auto for_faces = [&](size_t begin, size_t end, const auto& vertex, const auto& face) {
     for (size_t i = begin; i < end; ++i) {
-      const auto v = static_cast<uint32_t>(i);
-      vertex(v);
+      const uint32_t v = vertices_[i];
+      vertex(i);
       const uint32_t count = mesh.rings.valence[v];
-      if (count == 0) continue;
       uint32_t b = mesh.rings.slot(v, 0);
       for (uint32_t k = 0; k < count; ++k) {
         const uint32_t a = b;
         b = mesh.rings.slot(v, k + 1 == count ? 0 : k + 1);
-        if (v < a && v < b) face(v, a, b);
+        if ((v < a || listed_[a] == 0) && (v < b || listed_[b] == 0)) face(v, a, b);
       }
     }
   };
-  block_faces_.resize_uninitialized(block_count(mesh.slots, kVertexBlock));
-  run_blocks(executor, mesh.slots, kVertexBlock, [&](size_t block, size_t begin, size_t end) {
+  const size_t count = vertices_.size();
+  block_faces_.resize_uninitialized(block_count(count, kVertexBlock));
+  run_blocks(executor, count, kVertexBlock, [&](size_t block, size_t begin, size_t end) {
     uint32_t faces = 0;
     for_faces(
-        begin, end, [](uint32_t) {}, [&](uint32_t, uint32_t, uint32_t) { ++faces; });
+        begin, end, [](size_t) {}, [&](uint32_t, uint32_t, uint32_t) { ++faces; });
     block_faces_[block] = faces;
   });
   uint32_t total = 0;
@@ -89,12 +108,12 @@ void MeetingSearch::list_faces(const Mesh& mesh, const Executor& executor) {
     total += here;
   }
   faces_.resize_uninitialized(3 * static_cast<size_t>(total));
-  begin_.resize_uninitialized(static_cast<size_t>(mesh.slots) + 1);
-  begin_[mesh.slots] = total;
-  run_blocks(executor, mesh.slots, kVertexBlock, [&](size_t block, size_t begin, size_t end) {
+  begin_.resize_uninitialized(count + 1);
+  begin_[count] = total;
+  run_blocks(executor, count, kVertexBlock, [&](size_t block, size_t begin, size_t end) {
     uint32_t next = block_faces_[block];
     for_faces(
-        begin, end, [&](uint32_t v) { begin_[v] = next; },
+        begin, end, [&](size_t i) { begin_[i] = next; },
         [&](uint32_t a, uint32_t b, uint32_t c) {
           uint32_t* out = faces_.data() + 3 * static_cast<size_t>(next++);
           out[0] = a, out[1] = b, out[2] = c;
@@ -157,14 +176,18 @@ void MeetingSearch::build_level(size_t index, const Executor& executor) {
 }
 
 uint32_t MeetingSearch::index_of(uint32_t a, uint32_t b, uint32_t c) const {
-  while (a > b || a > c) {  // the smallest first
+  const auto before = [&](uint32_t x, uint32_t y) { return listed_[y] == 0 || x < y; };
+  // The first of those that are listed in front: a star's faces have one.
+  while (listed_[a] == 0 || !before(a, b) || !before(a, c)) {
     const uint32_t first = a;
     a = b;
     b = c;
     c = first;
   }
-  uint32_t f = begin_[a];
-  while (f + 1 < begin_[a + 1] && (face(f)[1] != b || face(f)[2] != c)) ++f;
+  const auto i = static_cast<size_t>(std::lower_bound(vertices_.begin(), vertices_.end(), a) -
+                                     vertices_.begin());
+  uint32_t f = begin_[i];
+  while (f + 1 < begin_[i + 1] && (face(f)[1] != b || face(f)[2] != c)) ++f;
   return f;
 }
 
@@ -259,15 +282,13 @@ const std::vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t
   const Mesh mesh{rings, slots, positions, marked};
   pairs_.clear();
   faces_.clear();
-  if (marked != nullptr && std::all_of(marked, marked + slots, [](uint8_t m) { return m == 0; })) {
-    return pairs_;
-  }
+  list_vertices(mesh);
   list_faces(mesh, executor);
   if (face_count() == 0) return pairs_;
   build_leaves(mesh, executor);
   while (levels_[level_count_ - 1].boxes.size() > 1) build_level(level_count_, executor);
   const size_t leaves = levels_[0].boxes.size();
-  const size_t vertex_tasks = block_count(slots, kVertexBlock);
+  const size_t vertex_tasks = block_count(vertices_.size(), kVertexBlock);
   const size_t tasks = vertex_tasks + block_count(leaves, kNodeBlock);
   found_.resize(std::max(found_.size(), tasks));
   executor.run(tasks, [&](size_t task) {
@@ -275,8 +296,8 @@ const std::vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t
     pairs.clear();
     if (task < vertex_tasks) {
       const size_t begin = task * kVertexBlock;
-      for (size_t v = begin; v < std::min<size_t>(slots, begin + kVertexBlock); ++v) {
-        search_star(mesh, static_cast<uint32_t>(v), pairs);
+      for (size_t i = begin; i < std::min(vertices_.size(), begin + kVertexBlock); ++i) {
+        search_star(mesh, vertices_[i], pairs);
       }
     } else {
       const size_t begin = (task - vertex_tasks) * kNodeBlock;

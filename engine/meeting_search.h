@@ -15,15 +15,17 @@ namespace plc {
 // where that leaves a doubt. For all others there is a tree of boxes, 8 children to a node, over
 // the faces in the order of ids: vertices are numbered along a space-filling curve, so nothing has
 // to be sorted and boxes are tight; with any other numbering results are the same and searches
-// slow.
+// slow. Only the faces around marked vertices and their neighbours are listed.
 //
-//   buffer    bytes per face   what
-//   faces     12               three ids, the smallest first, in order of Mesh::faces()
-//   begin     2                per vertex: its first face
-//   boxes     27.4             per node: boxes of 8 faces or nodes, lane by lane
-//   marked    0.15             per node: in which of the 8 a face is marked
+//   buffer    bytes per listed face   what
+//   vertices  2                       marked vertices and their neighbours
+//   faces     12                      three ids, the first listed vertex in front, in its order
+//   begin     2                       per listed vertex: its first face
+//   boxes     27.4                    per node: boxes of 8 faces or nodes, lane by lane
+//   marked    0.15                    per node: in which of the 8 a face is marked
 //
-// Buffers are kept from call to call. Not thread-safe: one search at a time.
+// and a byte per vertex that tells the listed ones. Buffers are kept from call to call. Not
+// thread-safe: one search at a time.
 class MeetingSearch {
  public:
   // rings and positions of ids below `slots`; deleted vertices (valence 0) are skipped. marked: per
@@ -69,6 +71,7 @@ class MeetingSearch {
   static Box all_lanes(const Boxes& boxes);
   static void set_lane(Boxes& boxes, uint32_t k, const Box& box);
 
+  void list_vertices(const Mesh& mesh);
   void list_faces(const Mesh& mesh, const Executor& executor);
   void build_leaves(const Mesh& mesh, const Executor& executor);
   void build_level(size_t level, const Executor& executor);
@@ -78,8 +81,10 @@ class MeetingSearch {
                      Pairs& pairs) const;
   uint32_t index_of(uint32_t a, uint32_t b, uint32_t c) const;
 
+  Buffer<uint32_t> vertices_;  // ascending
+  Buffer<uint8_t> listed_;     // per vertex
   Buffer<uint32_t> faces_;
-  Buffer<uint32_t> begin_;  // per vertex, and one more
+  Buffer<uint32_t> begin_;  // per listed vertex, and one more
   Buffer<uint32_t> block_faces_;
   std::vector<Level> levels_;
   size_t level_count_ = 0;

@@ -46,6 +46,17 @@ std::optional<Candidate> classify(const Mesh& mesh, const Neighbors& of_u, uint3
 
 }  // namespace
 
+std::optional<Candidate> pair_candidate(const Mesh& mesh, uint32_t u, uint32_t w,
+                                        uint32_t iteration) {
+  const auto reach = kMinApart * static_cast<float>(mesh.delta);
+  if (!mesh.alive(u) || !mesh.alive(w) ||
+      squared_distance(mesh.at(u), mesh.at(w)) >= reach * reach) {
+    return std::nullopt;
+  }
+  const Neighbors ring = mesh.ring(u);
+  return ring.contains(w) ? std::nullopt : classify(mesh, ring, u, w, iteration);
+}
+
 void proximity_candidates(const Mesh& mesh, const SpatialHash& hash, uint32_t u,
                           const std::vector<uint32_t>& pending, uint32_t stamp, uint32_t iteration,
                           std::vector<Candidate>& candidates) {

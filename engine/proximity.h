@@ -8,6 +8,10 @@
 
 namespace plc {
 
+// What the pair (u, w), u < w, asks for, if it violates (3).
+std::optional<Candidate> pair_candidate(const Mesh& mesh, uint32_t u, uint32_t w,
+                                        uint32_t iteration);
+
 // Appends what the pairs (u, w) that violate (3) ask for. A pair is taken from u when w is not
 // `pending`, or from its smaller id. May append a candidate twice.
 //   opposite across an edge a-b: a flat quadrilateral or a crease, no collision: inversion of a-b

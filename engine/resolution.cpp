@@ -4,6 +4,7 @@
 
 #include "engine/annular.h"
 #include "engine/axial.h"
+#include "engine/blocks.h"
 #include "engine/constants.h"
 #include "engine/creation.h"
 #include "engine/deletion.h"
@@ -38,12 +39,13 @@ std::vector<Candidate> collect_in_order(const Executor& executor,
 }  // namespace
 
 Resolution::Resolution(Mesh& mesh, const Executor& executor, SimdTarget simd)
-    : mesh_(mesh), executor_(executor), simd_(simd) {}
+    : mesh_(mesh), executor_(executor), simd_(simd), surroundings_(mesh, executor, simd) {}
 
 void Resolution::restart() {
   stamp_.clear();
   claim_.clear();
   stamp_count_ = round_ = 0;
+  hash_valid_ = false;
   tiny_.start(mesh_);
 }
 
@@ -55,7 +57,7 @@ void Resolution::run(uint32_t iteration, OperationCounts& counts) {
   queue_violated_edges();
   for (int pass = 0; pass < kMaxAxialPasses; ++pass) {
     resolve_edges(counts);
-    if (!resolve_pairs(counts)) break;
+    if (!resolve_pairs(pass == 0, counts)) break;
   }
   // What the limits left over is checked again in the next iteration.
   for (const auto* queue : {&edge_queue_, &pair_queue_}) {
@@ -68,35 +70,63 @@ void Resolution::run(uint32_t iteration, OperationCounts& counts) {
 }
 
 const std::vector<uint32_t>& Resolution::take_due(bool check_all) {
-  hash_.build(mesh_, kMinApart * static_cast<float>(mesh_.delta), executor_);
+  due_.clear();
   pair_queue_.clear();
   const float far = kCheckPath * static_cast<float>(mesh_.delta);
+  std::fill(mesh_.operations.begin(), mesh_.operations.end(), uint8_t{0});
   for (uint32_t v = 0; v < mesh_.slots(); ++v) {
-    if (!mesh_.alive(v)) continue;
-    mesh_.operations[v] = 0;
     if (!check_all && mesh_.path[v] < far && mesh_.idle[v] < kCheckPeriod) {
       ++mesh_.idle[v];
       continue;
     }
+    if (!mesh_.alive(v)) continue;
     mesh_.path[v] = 0;
     mesh_.idle[v] = 0;
-    pair_queue_.push_back(v);
+    due_.push_back(v);
   }
-  return pair_queue_;
+  update_hash(check_all);
+  surroundings_.search(due_, hash_);
+  return due_;
+}
+
+// A vertex is due before it has moved farther than the slack, and is entered anew then.
+void Resolution::update_hash(bool all) {
+  const bool many = due_.size() + hash_.inserted() > mesh_.slots() / kHashInsertions;
+  if (all || many || !hash_valid_) {
+    const auto delta = static_cast<float>(mesh_.delta);
+    hash_.build(mesh_, kHashCell * delta, executor_, kCheckPath * delta);
+    hash_valid_ = true;
+    return;
+  }
+  for (const uint32_t v : due_) hash_.insert(v, mesh_.at(v));
+}
+
+void Resolution::add_due(const std::vector<uint32_t>& vertices) {
+  pair_queue_.insert(pair_queue_.end(), vertices.begin(), vertices.end());
 }
 
 void Resolution::queue_violated_edges() {
   edge_queue_.clear();
   const auto delta = static_cast<float>(mesh_.delta);
   flags_.resize_uninitialized(mesh_.padded());
-  const uint32_t n = mesh_.padded();
-  executor_.run((n + kGrain - 1) / kGrain, [&](size_t block) {
-    const auto begin = static_cast<uint32_t>(block) * kGrain;
-    kernels::edge_violations(simd_, mesh_.rings(), mesh_.packed.data(), delta * delta,
-                             kMaxEdge * kMaxEdge * delta * delta, begin,
-                             std::min(begin + kGrain, n), flags_.data());
+  if (!pair_queue_.empty()) {
+    due_.insert(due_.end(), pair_queue_.begin(), pair_queue_.end());
+    std::sort(due_.begin(), due_.end());
+    due_.erase(std::unique(due_.begin(), due_.end()), due_.end());
+  }
+  blocks_.clear();
+  for (const uint32_t v : due_) {
+    if (blocks_.empty() || blocks_.back() != v / kRingLanes) blocks_.push_back(v / kRingLanes);
+  }
+  run_blocks(executor_, blocks_.size(), kGrain / kRingLanes, [&](size_t, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const uint32_t v = blocks_[i] * kRingLanes;
+      kernels::edge_violations(simd_, mesh_.rings(), mesh_.packed.data(), delta * delta,
+                               kMaxEdge * kMaxEdge * delta * delta, v, v + kRingLanes,
+                               flags_.data());
+    }
   });
-  for (const uint32_t v : pair_queue_) {
+  for (const uint32_t v : due_) {
     if (flags_[v] != 0) edge_queue_.push_back(v);
   }
 }
@@ -144,11 +174,11 @@ std::vector<Candidate> Resolution::edge_candidates(const std::vector<uint32_t>& 
   });
 }
 
-// One pass over (3); false when nothing was left to do.
-bool Resolution::resolve_pairs(OperationCounts& counts) {
+// One pass over (3); false when nothing was left to do. The first pass takes what take_due() has
+// found; all look again around what has changed since.
+bool Resolution::resolve_pairs(bool first, OperationCounts& counts) {
   unique(pair_queue_);
-  if (pair_queue_.empty()) return false;
-  const std::vector<Candidate> candidates = pair_candidates(pair_queue_);
+  const std::vector<Candidate> candidates = pair_candidates(pair_queue_, first);
   pair_queue_.clear();
   if (candidates.empty()) return false;
   std::vector<uint32_t> later;
@@ -157,11 +187,18 @@ bool Resolution::resolve_pairs(OperationCounts& counts) {
   return true;
 }
 
-std::vector<Candidate> Resolution::pair_candidates(const std::vector<uint32_t>& queue) {
+std::vector<Candidate> Resolution::pair_candidates(const std::vector<uint32_t>& queue, bool first) {
   const uint32_t stamp = stamp_queue(queue);
   auto all = collect_in_order(executor_, queue, [&](uint32_t u, std::vector<Candidate>& out) {
     proximity_candidates(mesh_, hash_, u, stamp_, stamp, iteration_, out);
   });
+  if (first) {
+    for (const VertexPair& pair : surroundings_.too_near()) {
+      if (const auto candidate = pair_candidate(mesh_, pair.u, pair.w, iteration_)) {
+        all.push_back(*candidate);
+      }
+    }
+  }
   // Nearest first whatever they ask for; a pair may have been found twice.
   const auto nearer = [](const Candidate& l, const Candidate& r) {
     return std::tie(l.key, l.edge.u, l.edge.v, l.operation, l.edge.a) <

@@ -6,6 +6,7 @@
 #include "engine/mesh.h"
 #include "engine/spatial_hash.h"
 #include "engine/statistics.h"
+#include "engine/surroundings.h"
 #include "engine/tiny_components.h"
 #include "kernels/simd.h"
 #include "pyramid/executor.h"
@@ -23,18 +24,24 @@ class Resolution {
   // Everything that is known about single vertices is forgotten: new ids, new level.
   void restart();
   // The vertices that are due for a check by the slow-vertex rule (3.6) - all of them: check_all -
-  // in ascending order; their periods start anew. Also builds the hash of all vertices.
+  // in ascending order; their periods start anew. Also brings the hash up to date and searches what
+  // is around those vertices.
   const std::vector<uint32_t>& take_due(bool check_all);
   SpatialHash& hash() { return hash_; }
-  // One pass of figure 9 over the vertices that take_due() returned.
+  // What take_due() has found.
+  const Surroundings& surroundings() const { return surroundings_; }
+  // These have been moved since take_due(): their constraints are checked, too.
+  void add_due(const std::vector<uint32_t>& vertices);
+  // One pass of figure 9 over the vertices that take_due() returned, and those added.
   void run(uint32_t iteration, OperationCounts& counts);
 
  private:
+  void update_hash(bool all);
   void queue_violated_edges();
   void resolve_edges(OperationCounts& counts);
-  bool resolve_pairs(OperationCounts& counts);
+  bool resolve_pairs(bool first, OperationCounts& counts);
   std::vector<Candidate> edge_candidates(const std::vector<uint32_t>& queue);
-  std::vector<Candidate> pair_candidates(const std::vector<uint32_t>& queue);
+  std::vector<Candidate> pair_candidates(const std::vector<uint32_t>& queue, bool first);
   // Applies what does not conflict; the vertices of what does are appended to `later`.
   void apply_round(const std::vector<Candidate>& candidates, std::vector<uint32_t>& later,
                    OperationCounts& counts);
@@ -56,11 +63,15 @@ class Resolution {
   const Executor& executor_;
   SimdTarget simd_;
   SpatialHash hash_;
+  bool hash_valid_ = false;
+  Surroundings surroundings_;
   TinyComponents tiny_;
   uint32_t iteration_ = 0;
   uint32_t next_cut_ = 1;
 
   Buffer<uint8_t> flags_;             // edge violations by the kernel
+  std::vector<uint32_t> due_;         // of take_due()
+  std::vector<uint32_t> blocks_;      // of kRingLanes vertices, with one that is due
   std::vector<uint32_t> edge_queue_;  // vertices whose edges are to be checked
   std::vector<uint32_t> pair_queue_;  // ... whose distance to non-neighbours is to be checked
   std::vector<uint32_t> changed_;     // where components may have become tiny

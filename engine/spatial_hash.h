@@ -12,23 +12,24 @@ namespace plc {
 
 // Buckets of a power of two; cell (x, y, z) lies in bucket (x + h(y, z)) mod buckets, so that the
 // cells of a row along x are neighbours in memory and a query walks one run per row. Different rows
-// may share buckets: a query can see a vertex twice, and vertices outside its box.
+// may share buckets, and a vertex may have entries where it was before: a query compares what it
+// comes across with where the vertex is now.
 //
-//   start    uint32 per bucket + 1   first entry of the bucket
-//   entries  16 bytes per vertex     position and id, by bucket, then by id
-//   late     what was inserted since: a list per bucket
+//   start    uint32 per bucket + 1     first entry of the bucket
+//   entries  uint32 per vertex         ids, by bucket, then in ascending order
+//   late     8 bytes per insertion     what was inserted since: a list per 4 buckets
+//
+// While building another 8 bytes per vertex.
 class SpatialHash {
  public:
-  struct Entry {
-    float x, y, z;
-    uint32_t id;
-  };
-
-  // All living vertices of the mesh. cell > 0, mesh units.
-  void build(const Mesh& mesh, float cell, const Executor& executor);
-  // A vertex that was created or moved since; its old entry, if any, is ignored from now on by
-  // queries, which compare entries with the mesh.
+  // All living vertices of the mesh. cell > 0, mesh units. slack >= 0: how far a vertex may be, on
+  // each axis, from where it was when it was last entered: queries look that much farther. The same
+  // table for any executor.
+  void build(const Mesh& mesh, float cell, const Executor& executor, float slack = 0);
+  // A vertex that was created since, or has moved by more than the slack.
   void insert(uint32_t v, Vec3 p);
+  // Vertices that insert() has been called for since build().
+  size_t inserted() const { return late_.size(); }
 
   // visit(id, position) for each living vertex within the box [low, high], perhaps twice; always in
   // the same order.
@@ -37,9 +38,9 @@ class SpatialHash {
 
  private:
   static constexpr uint32_t kEnd = ~0U;
+  static constexpr uint32_t kLateShift = 2;  // buckets per list, as a power of two
   struct Late {
-    Entry entry;
-    uint32_t next;
+    uint32_t id, next;
   };
   int32_t cell_of(float x) const { return static_cast<int32_t>(std::floor(x * inverse_cell_)); }
   uint32_t row(int32_t y, int32_t z) const {
@@ -48,46 +49,57 @@ class SpatialHash {
   uint32_t bucket(Vec3 p) const {
     return (static_cast<uint32_t>(cell_of(p.x)) + row(cell_of(p.y), cell_of(p.z))) & mask_;
   }
-  static bool current(const Mesh& mesh, const Entry& e) {
-    const Packed& p = mesh.packed[e.id];
-    return mesh.alive(e.id) && p.x == e.x && p.y == e.y && p.z == e.z;
-  }
+  // visit(id) for every entry of `run + 1` buckets from `first` on, and those in lists with them.
+  template <typename Visit>
+  void visit_row(uint32_t first, uint32_t run, const Visit& visit) const;
 
   float inverse_cell_ = 1;
+  float slack_ = 0;
   uint32_t mask_ = 0;
   Buffer<uint32_t> start_;
-  Buffer<uint32_t> bucket_of_;
-  Buffer<Entry> entries_;
+  Buffer<uint32_t> entries_;
   Buffer<uint32_t> late_head_;
   Buffer<Late> late_;
+  // By part of the buckets, then by vertex: while building.
+  struct Placed {
+    uint32_t id, bucket;
+  };
+  Buffer<Placed> placed_;
+  Buffer<uint32_t> part_start_;
 };
 
 template <typename Visit>
+void SpatialHash::visit_row(uint32_t first, uint32_t run, const Visit& visit) const {
+  for (uint32_t k = 0; k <= run;) {
+    const uint32_t b = (first + k) & mask_;
+    const uint32_t last = std::min(b + (run - k), mask_);
+    for (uint32_t i = start_[b]; i < start_[last + 1]; ++i) visit(entries_[i]);
+    if (!late_.empty()) {
+      for (uint32_t l = b >> kLateShift; l <= last >> kLateShift; ++l) {
+        for (uint32_t i = late_head_[l]; i != kEnd; i = late_[i].next) visit(late_[i].id);
+      }
+    }
+    k += last - b + 1;
+  }
+}
+
+template <typename Visit>
 void SpatialHash::visit_box(const Mesh& mesh, Vec3 low, Vec3 high, Visit&& visit) const {
-  const auto look = [&](const Entry& e) {
-    if (e.x >= low.x && e.x <= high.x && e.y >= low.y && e.y <= high.y && e.z >= low.z &&
-        e.z <= high.z && current(mesh, e)) {
-      visit(e.id, Vec3{e.x, e.y, e.z});
+  const auto look = [&](uint32_t v) {
+    const Packed& p = mesh.packed[v];
+    if (p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z &&
+        p.z <= high.z && mesh.alive(v)) {
+      visit(v, Vec3{p.x, p.y, p.z});
     }
   };
-  const int32_t x0 = cell_of(low.x);
-  const uint32_t run = static_cast<uint32_t>(cell_of(high.x) - x0);
-  const int32_t y1 = cell_of(high.y);
-  const int32_t z1 = cell_of(high.z);
-  for (int32_t z = cell_of(low.z); z <= z1; ++z) {
-    for (int32_t y = cell_of(low.y); y <= y1; ++y) {
-      const uint32_t first = (static_cast<uint32_t>(x0) + row(y, z)) & mask_;
-      for (uint32_t k = 0; k <= run;) {
-        const uint32_t b = (first + k) & mask_;
-        const uint32_t last = std::min(b + (run - k), mask_);
-        for (uint32_t i = start_[b]; i < start_[last + 1]; ++i) look(entries_[i]);
-        k += last - b + 1;
-      }
-      if (late_.empty()) continue;
-      for (uint32_t k = 0; k <= run; ++k) {
-        const uint32_t head = late_head_[(first + k) & mask_];
-        for (uint32_t i = head; i != kEnd; i = late_[i].next) look(late_[i].entry);
-      }
+  const int32_t x0 = cell_of(low.x - slack_);
+  const uint32_t run = static_cast<uint32_t>(cell_of(high.x + slack_) - x0);
+  const int32_t y0 = cell_of(low.y - slack_);
+  const int32_t y1 = cell_of(high.y + slack_);
+  const int32_t z1 = cell_of(high.z + slack_);
+  for (int32_t z = cell_of(low.z - slack_); z <= z1; ++z) {
+    for (int32_t y = y0; y <= y1; ++y) {
+      visit_row((static_cast<uint32_t>(x0) + row(y, z)) & mask_, run, look);
     }
   }
 }

@@ -8,6 +8,7 @@
 
 #include "kernels/image.h"
 #include "kernels/integrate.h"
+#include "kernels/nearby.h"
 #include "kernels/ring.h"
 #include "kernels/separable.h"
 #include "kernels/sobel.h"
@@ -71,6 +72,9 @@ void move(const float* dx, const float* dy, const float* dz, float* px, float* p
           Packed* packed, float* path, uint32_t begin, uint32_t end);
 double normal_energy_sum(const float* dx, const float* dy, const float* dz, const float* nx,
                          const float* ny, const float* nz, uint32_t begin, uint32_t end);
+
+// nearby.h
+uint32_t near_or_turned(const NearbyView& view, const NearbyQuery& query, uint32_t* hits);
 
 // voxels.h
 void normalize_voxels(VoxelType type, const void* voxels, size_t count, double low, double scale,

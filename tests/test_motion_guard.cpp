@@ -6,6 +6,7 @@
 
 #include "engine/constants.h"
 #include "engine/edge.h"
+#include "engine/surroundings.h"
 #include "tests/kernel_fixtures.h"
 #include "tests/sample_surfaces.h"
 #include "tests/sample_volumes.h"
@@ -35,7 +36,14 @@ class Movement {
     for (uint32_t v = 0; v < mesh_.slots(); ++v) {
       if (mesh_.alive(v)) due.push_back(v);
     }
-    return guard.take_back(before_, due, hash_);
+    plc::Surroundings around(mesh_, executor, plc::best_simd_target());
+    around.search(due, hash_);
+    guard.assess(due, around.at_risk());
+    std::vector<uint32_t> back;
+    const int64_t count = guard.take_back(before_, hash_, back);
+    CHECK(static_cast<int64_t>(back.size()) == count);
+    for (const uint32_t v : back) CHECK(is_back(v));
+    return count;
   }
   bool is_back(uint32_t v) const {
     const plc::Packed& p = mesh_.packed[v];
@@ -177,7 +185,9 @@ TEST_CASE("only the risk of vertices that are due is looked at again", "[motion_
   plc::MotionGuard guard(mesh, samples::kSerial);
   plc::SpatialHash hash;
   hash.build(mesh, plc::kMinApart * static_cast<float>(kDelta), samples::kSerial);
-  CHECK(guard.take_back(mesh.packed, {3, 50}, hash) == 0);
+  plc::Surroundings around(mesh, samples::kSerial, plc::best_simd_target());
+  around.search({3, 50}, hash);
+  guard.assess({3, 50}, around.at_risk());
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     CHECK(mesh.risk[v] == (v == 3 || v == 50 ? 0 : 1));
   }

@@ -1,0 +1,118 @@
+#include "engine/surroundings.h"
+
+#include <algorithm>
+
+#include "engine/blocks.h"
+#include "engine/constants.h"
+#include "engine/risk.h"
+#include "kernels/nearby.h"
+
+namespace plc {
+
+namespace {
+
+constexpr size_t kTaskVertices = 256;
+// A group ends where its box would grow beyond this, in delta: what is around it is fetched once
+// but searched by each of its vertices.
+constexpr float kGroupExtent = 4;
+constexpr size_t kGroupVertices = 32;
+
+}  // namespace
+
+// What one task has found, and its scratch memory.
+struct Surroundings::Task {
+  std::vector<VertexPair> too_near;
+  std::vector<uint32_t> at_risk;
+  std::vector<uint32_t> ids;      // around the group
+  std::vector<float> streams[6];  // their places and normals
+  std::vector<uint32_t> hits;
+};
+
+void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& hash) {
+  std::vector<Task> tasks(block_count(due.size(), kTaskVertices));
+  run_blocks(executor_, due.size(), kTaskVertices, [&](size_t index, size_t begin, size_t end) {
+    for (size_t i = begin; i < end;) {
+      Vec3 low, high;
+      const size_t count = group_size(due.data() + i, end - i, low, high);
+      const float reach = kRiskReach * static_cast<float>(mesh_.delta);
+      const Vec3 span{reach, reach, reach};
+      Task& task = tasks[index];
+      task.ids.clear();
+      hash.visit_box(mesh_, low - span, high + span,
+                     [&](uint32_t w, Vec3) { task.ids.push_back(w); });
+      search_group(due.data() + i, count, task);
+      i += count;
+    }
+  });
+  too_near_.clear();
+  at_risk_.clear();
+  for (const Task& task : tasks) {
+    too_near_.insert(too_near_.end(), task.too_near.begin(), task.too_near.end());
+    at_risk_.insert(at_risk_.end(), task.at_risk.begin(), task.at_risk.end());
+  }
+  std::sort(too_near_.begin(), too_near_.end());
+  too_near_.erase(std::unique(too_near_.begin(), too_near_.end()), too_near_.end());
+}
+
+// How many of the vertices make a group, and its box.
+size_t Surroundings::group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high) const {
+  const float extent = kGroupExtent * static_cast<float>(mesh_.delta);
+  low = high = mesh_.at(due[0]);
+  size_t size = 1;
+  for (; size < std::min(count, kGroupVertices); ++size) {
+    const Vec3 p = mesh_.at(due[size]);
+    const Vec3 l{std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    const Vec3 h{std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    if (h.x - l.x > extent || h.y - l.y > extent || h.z - l.z > extent) break;
+    low = l;
+    high = h;
+  }
+  return size;
+}
+
+void Surroundings::search_group(const uint32_t* due, size_t count, Task& task) const {
+  const auto around = static_cast<uint32_t>(task.ids.size());
+  const size_t padded = block_count(around, kRingLanes) * kRingLanes;
+  for (auto& stream : task.streams) stream.resize(padded);
+  task.hits.resize(around + kRingLanes);
+  auto& [x, y, z, nx, ny, nz] = task.streams;
+  for (uint32_t i = 0; i < around; ++i) {
+    const uint32_t w = task.ids[i];
+    const Packed& p = mesh_.packed[w];
+    x[i] = p.x, y[i] = p.y, z[i] = p.z;
+    nx[i] = mesh_.normal.x[w], ny[i] = mesh_.normal.y[w], nz[i] = mesh_.normal.z[w];
+  }
+  const kernels::NearbyView view{x.data(),  y.data(),  z.data(), nx.data(),
+                                 ny.data(), nz.data(), around};
+  const auto delta = static_cast<float>(mesh_.delta);
+  const float near = kMinApart * delta, far = kRiskReach * delta;
+  for (size_t i = 0; i < count; ++i) {
+    const Vec3 p = mesh_.at(due[i]), n = mesh_.normal.at(due[i]);
+    const uint32_t hits = kernels::near_or_turned(
+        simd_, view, {p.x, p.y, p.z, n.x, n.y, n.z, near * near, far * far, kRiskDot},
+        task.hits.data());
+    judge(due[i], hits, task);
+  }
+}
+
+void Surroundings::judge(uint32_t v, uint32_t hits, Task& task) const {
+  const Vec3 p = mesh_.at(v), n = mesh_.normal.at(v);
+  const float near = kMinApart * static_cast<float>(mesh_.delta);
+  const Neighbors ring = mesh_.ring(v);
+  bool risk = folded(mesh_, v, ring);
+  for (uint32_t k = 0; k < hits; ++k) {
+    const uint32_t i = task.hits[k];
+    const uint32_t w = task.ids[i];
+    if (w == v || ring.contains(w)) continue;
+    if (squared_distance(p, mesh_.at(w)) < near * near) {
+      task.too_near.push_back({std::min(v, w), std::max(v, w)});
+    }
+    if (dot(n, mesh_.normal.at(w)) <= kRiskDot && may_meet(mesh_, v, ring, w)) {
+      task.at_risk.push_back(w);
+      risk = true;
+    }
+  }
+  if (risk) task.at_risk.push_back(v);
+}
+
+}  // namespace plc

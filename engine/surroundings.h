@@ -1,0 +1,49 @@
+// What lies around the vertices that are due for a check: one search for constraint (3) and for the
+// motion guard.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "engine/mesh.h"
+#include "engine/spatial_hash.h"
+#include "kernels/simd.h"
+#include "pyramid/executor.h"
+
+namespace plc {
+
+struct VertexPair {
+  uint32_t u, w;
+  friend bool operator==(const VertexPair& a, const VertexPair& b) = default;
+  friend auto operator<=>(const VertexPair& a, const VertexPair& b) = default;
+};
+
+// Due vertices that are neighbours in memory lie near each other: what is around a group of them is
+// fetched once, into streams, and searched for each of them by a kernel.
+class Surroundings {
+ public:
+  Surroundings(const Mesh& mesh, const Executor& executor, SimdTarget simd)
+      : mesh_(mesh), executor_(executor), simd_(simd) {}
+
+  // due: ascending. The hash holds every living vertex. Normals are those of mesh.normal.
+  void search(const std::vector<uint32_t>& due, const SpatialHash& hash);
+
+  // Of the last search: the non-neighbours u < w, one of them due, that are nearer than (3) allows;
+  // sorted.
+  const std::vector<VertexPair>& too_near() const { return too_near_; }
+  // Of the last search: the vertices at risk (risk.h), one of each two at least due; some twice.
+  const std::vector<uint32_t>& at_risk() const { return at_risk_; }
+
+ private:
+  struct Task;
+  void search_group(const uint32_t* due, size_t count, Task& task) const;
+  void judge(uint32_t v, uint32_t hits, Task& task) const;
+  size_t group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high) const;
+
+  const Mesh& mesh_;
+  const Executor& executor_;
+  SimdTarget simd_;
+  std::vector<VertexPair> too_near_;
+  std::vector<uint32_t> at_risk_;
+};
+
+}  // namespace plc

@@ -1,0 +1,58 @@
+#include "kernels/nearby.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/nearby.cpp"
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+#include "kernels/dispatch.h"
+#include "kernels/scalar.h"
+#include "kernels/vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace plc::kernels {
+namespace HWY_NAMESPACE {
+
+#if PLC_SCALAR_TARGET
+using scalar::near_or_turned;
+#else
+
+uint32_t near_or_turned(const NearbyView& view, const NearbyQuery& q, uint32_t* hits) {
+  const FloatTag d;
+  const hn::RebindToUnsigned<FloatTag> du;
+  const Floats3 place{hn::Set(d, q.x), hn::Set(d, q.y), hn::Set(d, q.z)};
+  const Floats3 normal{hn::Set(d, q.nx), hn::Set(d, q.ny), hn::Set(d, q.nz)};
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < view.count; i += kLanes) {
+    const Floats3 apart = load3(view.x, view.y, view.z, i) - place;
+    const Floats squared = dot(apart, apart);
+    FloatMask hit = hn::Le(squared, hn::Set(d, q.far_squared));
+    if (hn::AllFalse(d, hit)) continue;
+    const FloatMask turned =
+        hn::Le(dot(load3(view.nx, view.ny, view.nz, i), normal), hn::Set(d, q.most));
+    hit = hn::And(hit, hn::Or(turned, hn::Lt(squared, hn::Set(d, q.near_squared))));
+    const auto index = hn::Iota(du, i);
+    const auto valid = hn::Lt(index, hn::Set(du, view.count));
+    count += static_cast<uint32_t>(
+        hn::CompressStore(index, hn::And(hn::RebindMask(du, hit), valid), du, hits + count));
+  }
+  return count;
+}
+
+#endif  // PLC_SCALAR_TARGET
+
+}  // namespace HWY_NAMESPACE
+}  // namespace plc::kernels
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace plc::kernels {
+
+HWY_EXPORT(near_or_turned);
+
+uint32_t near_or_turned(SimdTarget simd, const NearbyView& view, const NearbyQuery& query,
+                        uint32_t* hits) {
+  return PLC_DISPATCH(simd, near_or_turned)(view, query, hits);
+}
+
+}  // namespace plc::kernels
+#endif  // HWY_ONCE
