@@ -12,7 +12,6 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <thread>
 
 #include "engine/evolution.h"
@@ -193,27 +192,33 @@ void add_resolution(Suite& suite, const std::string& name, const Mesh& start) {
   });
 }
 
+// Search around the moved vertices, which is take_due's, is not in its time.
 void add_guard(Suite& suite, const Mesh& start) {
   suite.add("motion_guard", start, [&suite](Bench& b) {
     struct Parts {
+      Parts(Bench& bench, const plc::Model& model)
+          : dynamics(bench.mesh, bench.schedule, kSimd, model),
+            resolution(bench.mesh, bench.schedule, kSimd),
+            guard(bench.mesh, bench.schedule) {}
       plc::Dynamics dynamics;
+      plc::Resolution resolution;
       plc::MotionGuard guard;
-      plc::SpatialHash hash;
-      std::vector<uint32_t> due;
+      std::vector<uint32_t> due, back;
     };
-    auto parts = std::make_shared<Parts>(Parts{
-        {b.mesh, b.schedule, kSimd, suite.head().recovery.model}, {b.mesh, b.schedule}, {}, {}});
-    parts->due.resize(b.from.vertex_count());
-    std::iota(parts->due.begin(), parts->due.end(), 0U);
+    auto parts = std::make_shared<Parts>(b, suite.head().recovery.model);
     const auto prepare = [&b, &suite, parts] {
       b.restore();
+      parts->resolution.restart();
       plc::Seconds seconds;
       (void)parts->dynamics.step(suite.head().guide, seconds).ok();
-      parts->hash.build(b.mesh, cell_of(b.mesh), b.schedule);
+      parts->due = parts->resolution.take_due(true);
+      parts->back.clear();
     };
     const auto measured = [parts] {
-      return timed(
-          [&] { parts->guard.take_back(parts->dynamics.before(), parts->due, parts->hash); });
+      return timed([&] {
+        parts->guard.assess(parts->due, parts->resolution.surroundings().at_risk());
+        parts->guard.take_back(parts->dynamics.before(), parts->resolution.hash(), parts->back);
+      });
     };
     return Suite::Case{prepare, measured, [&b] { return hash_of(b.mesh); }};
   });

@@ -81,11 +81,11 @@ set multiplot layout 1, 3
 set key bottom right
 set xlabel 'threads'
 set title 'times as fast as one thread, finest level'
-set xrange [0.8:*]; set yrange [0:*]; set offsets 0, 0.2, 0, 0
+set xrange [0.8:$(sort -n "$data/threads" | awk 'END { print $1 + 0.2 }')]; set yrange [0:*]
 set xtics 1
 plot '$data/threads' using 1:2:3:4 with yerrorbars lt 1 pt 7 notitle, '' using 1:2 with lines lt 1 notitle, \
   x with lines lt 4 dt 2 title 'ideal'
-set xrange [*:*]; set offsets 0, 0, 0, 0
+set xrange [*:*]
 set logscale x; set xtics auto; set format x '10^{%L}'
 set xlabel 'vertices'
 set title 'ns per vertex and iteration, one thread'
@@ -116,7 +116,7 @@ set logscale x
 set xlabel 's'
 set xrange [0.03:*]
 set yrange [-0.6:$(wc -l <"$data/peers") - 0.4]
-set lmargin 58
+set lmargin 48
 plot '$data/peers' using 2:0:(0.03):2:(\$0 - 0.36):(\$0 + 0.36):5:ytic(1) with boxxyerror lc variable, \
   '' using 2:0:3:4 with xerrorbars lt -1 pt 0
 END
