@@ -2,7 +2,7 @@
 // pyramid:
 //   peer_level_set VOLUME [LEVELS]    levels above the full image, 3 by default
 // Values are those of `pellicle extract` for bone of the head CT: its window, 226 HU. A level ends
-// when the mean change of the level set falls under 0.005, or after 1000 iterations.
+// when the mean change of the level set falls under 0.005, or after 2000 iterations.
 #include <itkThresholdSegmentationLevelSetImageFilter.h>
 
 #include <cstdlib>
@@ -14,7 +14,7 @@ namespace {
 using peer::Image;
 
 constexpr float kLow = -105.5F, kHigh = 1418.9F, kIso = 226;
-constexpr int kIterations = 1000;
+constexpr int kIterations = 2000;
 constexpr double kChange = 0.005;
 
 // Negative inside a box that leaves two voxels of the image outside.
