@@ -96,10 +96,13 @@ int main(int argc, char** argv) {
         iterations += (iterations.empty() ? "" : ", ") + std::to_string(result.iterations);
       }
     });
+    // A sixth of a voxel at most is what it moves in an iteration.
+    const std::string stopped =
+        result.iterations < kIterations ? "" : ", stopped after " + std::to_string(kIterations);
+    const std::string how = levels == 0 ? "direct" : std::to_string(levels) + " levels";
     std::printf(
-        "{\"title\": \"ITK threshold level set, %s\", \"seconds\": %.3f, "
+        "{\"title\": \"ITK threshold level set, %s%s\", \"seconds\": %.3f, "
         "\"iterations\": [%s], \"volume\": %.0f}\n",
-        levels == 0 ? "direct" : (std::to_string(levels) + " levels").c_str(), seconds,
-        iterations.c_str(), volume_of(result.phi));
+        how.c_str(), stopped.c_str(), seconds, iterations.c_str(), volume_of(result.phi));
   });
 }
