@@ -1,5 +1,13 @@
 // ITK images of a volume, and the pyramid that ITK makes of one.
 #pragma once
+// Its headers know GCC alone and refuse other compilers, clang-tidy among them. What their
+// detection defines and the headers below use:
+#define ITK_COMPILER_DETECTION_H
+#define ITK_NOEXCEPT noexcept
+#define VXL_COMPILER_DETECTION_H
+#define VXL_DEPRECATED_MSG(text)
+#endif
+
 #include <itkImage.h>
 #include <itkResampleImageFilter.h>
 #include <itkSmoothingRecursiveGaussianImageFilter.h>

@@ -3,11 +3,11 @@
 //   peer_level_set VOLUME [LEVELS]    levels above the full image, 3 by default
 // Values are those of `pellicle extract` for bone of the head CT: its window, 226 HU. A level ends
 // when the mean change of the level set falls under 0.005, or after 2000 iterations.
+#include "perf/peers/peer_itk.h"
+// Behind what peer_itk.h defines.
 #include <itkThresholdSegmentationLevelSetImageFilter.h>
 
 #include <cstdlib>
-
-#include "perf/peers/peer_itk.h"
 
 namespace {
 
