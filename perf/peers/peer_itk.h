@@ -1,7 +1,7 @@
 // ITK images of a volume, and the pyramid that ITK makes of one.
 #pragma once
-// Its headers know GCC alone and refuse other compilers, clang-tidy among them. What their
-// detection defines and the headers below use:
+// As in tools/volume_io_itk.cpp: Debian's ITK turns every compiler but GCC away.
+#ifdef __clang__
 #define ITK_COMPILER_DETECTION_H
 #define ITK_NOEXCEPT noexcept
 #define VXL_COMPILER_DETECTION_H
