@@ -48,7 +48,7 @@ run_variants() {
   declare -A spent=()
   for ((run = 1; run <= runs; ++run)); do
     for name in "${variants[@]}"; do
-      [ "${spent[$name]:-0}" -lt "$budget" ] || continue
+      [ "$run" -eq 1 ] || [ "${spent[$name]}" -lt "$budget" ] || continue
       report=$dir/$name.$run.json
       before=$SECONDS
       eval "${variant_command[$name]}"
