@@ -25,6 +25,21 @@ inline constexpr double kUnitPerDelta = 1.2;
 inline constexpr float kCheckPath = 0.1F;
 inline constexpr int kCheckPeriod = 50;
 
+// ---- sleep (sleep.h) ------------------------------------------------------------------------
+
+// The calm speed, as a part of the speed that every vertex would have at the energy epsilon,
+// sqrt(2 epsilon) delta per iteration. Twice as much halves what is awake of a head CT near its end
+// and loses 0.3 % of its area.
+inline constexpr double kCalmSpeed = 0.5;
+inline constexpr float kCalmSlide = 10;
+inline constexpr uint8_t kCalmPeriod = 8;
+// A vertex that has moved so far along its normal, in delta, wakes its neighbours.
+inline constexpr float kWakeMove = 0.05F;
+// A level ends only when it has been calm for so many iterations with all awake, and is not tried
+// again sooner.
+inline constexpr int kConfirmIterations = 6;
+inline constexpr int kConfirmPause = 20;
+
 // ---- spatial hash ---------------------------------------------------------------------------
 
 // Size of a cell, in delta.

@@ -44,13 +44,18 @@ void Dynamics::resize() {
 }
 
 void Dynamics::blocks(const std::function<void(uint32_t, uint32_t)>& body) const {
-  const uint32_t n = mesh_.padded();
-  const size_t tasks = (n + kGrain - 1) / kGrain;
+  const size_t per = kGrain / kRingLanes;
+  const size_t tasks = (awake_.size() + per - 1) / per;
   const auto block = [&](size_t i) {
-    const auto begin = static_cast<uint32_t>(i) * kGrain;
-    body(begin, std::min(begin + kGrain, n));
+    const size_t end = std::min((i + 1) * per, awake_.size());
+    for (size_t k = i * per; k < end;) {
+      const uint32_t first = awake_[k];
+      uint32_t last = first;
+      for (++k; k < end && awake_[k] == last + 1; ++k) ++last;
+      body(first * kRingLanes, (last + 1) * kRingLanes);
+    }
   };
-  if (n < kSerialBelow) {
+  if (awake_.size() * kRingLanes < kSerialBelow) {
     for (size_t i = 0; i < tasks; ++i) block(i);
   } else {
     schedule_.run(tasks, block);
@@ -58,15 +63,26 @@ void Dynamics::blocks(const std::function<void(uint32_t, uint32_t)>& body) const
 }
 
 double Dynamics::block_sum(const std::function<double(uint32_t, uint32_t)>& body) const {
-  std::vector<double> part((mesh_.padded() + kGrain - 1) / kGrain, 0.0);
-  blocks([&](uint32_t begin, uint32_t end) { part[begin / kGrain] = body(begin, end); });
+  std::vector<double> part(mesh_.padded() / kRingLanes, 0.0);
+  blocks([&](uint32_t begin, uint32_t end) { part[begin / kRingLanes] = body(begin, end); });
   double sum = 0;
   for (const double p : part) sum += p;
   return sum;
 }
 
-Status Dynamics::step(const Guide& guide, Seconds& seconds) {
+Status Dynamics::step(const Guide& guide, Seconds& seconds, const Sleep* sleep) {
   resize();
+  awake_.clear();
+  for (uint32_t b = 0; b < mesh_.padded() / kRingLanes && sleep == nullptr; ++b) awake_.push_back(b);
+  if (sleep != nullptr) awake_ = sleep->awake();
+  for (const uint32_t block : sleep == nullptr ? std::vector<uint32_t>{} : sleep->fallen()) {
+    for (uint32_t v = block * kRingLanes; v < (block + 1) * kRingLanes; ++v) {
+      stage_[0][v] = stage_[1][v] = mesh_.packed[v];
+    }
+    kernels::laplacian(simd_, mesh_.rings(), mesh_.packed.data(), block * kRingLanes,
+                       (block + 1) * kRingLanes, laplacian_.data());
+  }
+  std::copy(mesh_.packed.begin(), mesh_.packed.begin() + mesh_.padded(), before_.begin());
   const bool user_force = guide.user != nullptr && guide.user->force;
   if (stretched(guide.metric)) {
     for (Streams3* s : {&metric_normal_, &metric_step_}) s->resize(mesh_.padded());
@@ -240,9 +256,9 @@ void Dynamics::measure_rest_length(const Guide& guide) {
 // The longest displacement of this step.
 float Dynamics::fastest() const {
   const auto& d = mesh_.displacement;
-  std::vector<float> part((mesh_.padded() + kGrain - 1) / kGrain, 0.0F);
+  std::vector<float> part(mesh_.padded() / kRingLanes, 0.0F);
   blocks([&](uint32_t begin, uint32_t end) {
-    part[begin / kGrain] =
+    part[begin / kRingLanes] =
         kernels::max_squared(simd_, d.x.data(), d.y.data(), d.z.data(), begin, end);
   });
   return part.empty() ? 0.0F : std::sqrt(*std::max_element(part.begin(), part.end()));
@@ -296,7 +312,6 @@ void Dynamics::hold_pinned(const Guide& guide) {
 void Dynamics::move() {
   const auto& d = mesh_.displacement;
   blocks([&](uint32_t begin, uint32_t end) {
-    std::copy(mesh_.packed.begin() + begin, mesh_.packed.begin() + end, before_.begin() + begin);
     kernels::move(simd_, d.x.data(), d.y.data(), d.z.data(), mesh_.position.x.data(),
                   mesh_.position.y.data(), mesh_.position.z.data(), mesh_.packed.data(),
                   mesh_.path.data(), begin, end);

@@ -5,6 +5,7 @@
 #include "engine/guide.h"
 #include "engine/mesh.h"
 #include "engine/schedule.h"
+#include "engine/sleep.h"
 #include "engine/statistics.h"
 #include "kernels/integrate.h"
 #include "kernels/simd.h"
@@ -51,7 +52,7 @@ class Dynamics {
 
   // Moves every vertex once; displacement, velocity, normal and path of the mesh are written. Fails
   // where the user's force does; the surface is then where it was, or somewhere on the way.
-  Status step(const Guide& guide, Seconds& seconds);
+  Status step(const Guide& guide, Seconds& seconds, const Sleep* sleep = nullptr);
   // Mean of m (dx . n / (delta dt))^2 / 2 over the vertices, of the last step.
   double energy() const { return energy_; }
   // The longest movement of the last step, in delta per time.
@@ -60,6 +61,7 @@ class Dynamics {
   const Buffer<Packed>& before() const { return before_; }
 
  private:
+  std::vector<uint32_t> awake_;
   void resize();
   std::vector<Pass> passes(const Guide& guide, Seconds& seconds);
   void add_stage(int stage, const Guide& guide, Seconds& seconds, std::vector<Pass>& table);

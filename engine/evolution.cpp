@@ -16,22 +16,30 @@ namespace {
 
 }  // namespace
 
-Evolution::Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model)
+Evolution::Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model,
+                     const EvolutionOptions& options)
     : mesh_(mesh),
       schedule_(schedule),
+      slow_vertices_(options.slow_vertices),
+      sleep_(mesh, schedule, options.calm_speed),
       dynamics_(mesh, schedule, simd, model),
       guard_(mesh, schedule),
       resolution_(mesh, schedule, simd) {}
 
 void Evolution::restart() {
   resolution_.restart();
+  sleep_.restart();
 }
 
 Status Evolution::iterate(const Guide& guide, Seconds& seconds, OperationCounts& counts) {
   const double start = now();
-  if (Status s = dynamics_.step(guide, seconds); !s.ok()) return s;
+  // The user's force may change at any time.
+  sleep_.choose(guide.user != nullptr && guide.user->force);
+  if (Status s = dynamics_.step(guide, seconds, &sleep_); !s.ok()) return s;
+  sleep_.observe();
   const double moved = now();
-  const auto& due = resolution_.take_due(false);
+  const auto& due =
+      slow_vertices_ ? resolution_.take_due(sleep_.awake()) : resolution_.take_due(true);
   guard_.assess(due, resolution_.surroundings().at_risk());
   back_.clear();
   counts.reverted += guard_.take_back(dynamics_.before(), resolution_.hash(), back_);

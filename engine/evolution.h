@@ -4,13 +4,21 @@
 #include "engine/motion_guard.h"
 #include "engine/resolution.h"
 #include "engine/schedule.h"
+#include "engine/sleep.h"
 #include "engine/statistics.h"
 
 namespace plc {
 
+// Beyond the model of the paper.
+struct EvolutionOptions {
+  float calm_speed = 0;       // of sleep.h, delta per iteration; 0: nothing sleeps
+  bool slow_vertices = true;  // 3.6; false: every vertex is checked in every iteration
+};
+
 class Evolution {
  public:
-  Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model);
+  Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model,
+            const EvolutionOptions& options = {});
 
   // The ids or delta of the mesh have changed: at the start of a level.
   void restart();
@@ -23,6 +31,9 @@ class Evolution {
   // Tests all faces, not only those at risk. False when some meet; their vertices are at risk from
   // then on, so that the next iterations part them.
   bool embedded();
+  // Whether some vertices slept through the last iteration.
+  bool any_asleep() const { return sleep_.any_asleep(); }
+  void wake_all() { sleep_.wake_all(); }
   // Kinetic energy along the normals of the last iteration (5.1).
   double energy() const { return dynamics_.energy(); }
   // The longest movement of the last iteration, in delta per time.
@@ -31,6 +42,8 @@ class Evolution {
  private:
   Mesh& mesh_;
   const Schedule& schedule_;
+  bool slow_vertices_;
+  Sleep sleep_;
   Dynamics dynamics_;
   MotionGuard guard_;
   Resolution resolution_;

@@ -58,6 +58,7 @@ Neighbors Mesh::ring(uint32_t v) const {
 void Mesh::place(uint32_t v, Vec3 p) {
   position.set(v, p);
   packed[v] = {p.x, p.y, p.z, 0};
+  calm[v] = 0;
 }
 
 uint32_t Mesh::create(Vec3 p, Vec3 speed) {
@@ -74,6 +75,7 @@ uint32_t Mesh::create(Vec3 p, Vec3 speed) {
   normal.set(v, {});
   displacement.set(v, {});
   path[v] = 0;
+  stir[v] = 0;
   risk[v] = 1;
   operations[v] = 0;
   cut_id[v] = 0;
@@ -171,6 +173,8 @@ void Mesh::grow(uint32_t slots) {
   packed.resize(n);
   path.resize(n);
   idle.resize(n);
+  calm.resize(n);
+  stir.resize(n);
   risk.resize(n);
   operations.resize(n);
   cut_id.resize(n);
@@ -222,6 +226,8 @@ void Mesh::renumber(const std::vector<uint32_t>& order) {
   carry(to.packed, packed);
   carry(to.path, path);
   carry(to.idle, idle);
+  carry(to.calm, calm);
+  carry(to.stir, stir);
   carry(to.risk, risk);
   carry(to.operations, operations);
   carry(to.cut_id, cut_id);
@@ -260,8 +266,8 @@ uint64_t Mesh::bytes() const {
   const auto of = [](const auto& b) { return b.capacity() * sizeof(b[0]); };
   const auto of3 = [&](const Streams3& s) { return of(s.x) + of(s.y) + of(s.z); };
   return of3(position) + of3(velocity) + of3(normal) + of3(displacement) + of(packed) + of(path) +
-         of(idle) + of(risk) + of(operations) + of(cut_id) + of(cut_iteration) + of(columns_) +
-         of(valence_) + of(tail_);
+         of(idle) + of(calm) + of(stir) + of(risk) + of(operations) + of(cut_id) +
+         of(cut_iteration) + of(columns_) + of(valence_) + of(tail_);
 }
 
 }  // namespace plc

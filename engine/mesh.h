@@ -30,6 +30,9 @@ struct Streams3 {
 //   displacement   12     mesh units    rk4, bound
 //   path           4      mesh units    move; reset when the constraints of v are checked
 //   idle           1      iterations    since the constraints of v were checked
+//   calm           1      iterations    sleep.h: for how long v has been calm, up to 255
+//   stir           1      1/256 of      sleep.h: movement along the normal since v last woke its
+//                         kWakeMove     neighbours
 //   risk           1      flag          motion guard: the surface is near or folded here
 //   operations     1      count         resolution, in this iteration
 //   cut            4+4    id, iteration annular: which cut made v, and when (exemption from (3))
@@ -48,6 +51,7 @@ class Mesh {
   Buffer<Packed> packed;
   Buffer<float> path;
   Buffer<uint8_t> idle;
+  Buffer<uint8_t> calm, stir;
   Buffer<uint8_t> risk;
   Buffer<uint8_t> operations;
   Buffer<uint32_t> cut_id;
@@ -79,8 +83,11 @@ class Mesh {
   void insert_after(uint32_t v, uint32_t neighbor, uint32_t added);
   void remove(uint32_t v, uint32_t neighbor);
 
-  // Makes every constraint of v be checked at the next opportunity.
-  void wake(uint32_t v) { idle[v] = kAwake; }
+  // Makes every constraint of v be checked at the next opportunity; v does not sleep.
+  void wake(uint32_t v) {
+    idle[v] = kAwake;
+    calm[v] = 0;
+  }
   static constexpr uint8_t kAwake = 255;
 
   void clear();

@@ -12,6 +12,16 @@ namespace plc {
 
 namespace {
 
+EvolutionOptions evolution_options(const RecoverySpec& spec) {
+  EvolutionOptions options;
+  // The speed along the normal that every vertex would have at the energy epsilon.
+  const double speed = std::sqrt(2 * spec.epsilon / static_cast<double>(spec.model.mass)) *
+                       static_cast<double>(stable_time_step(spec.model));
+  if (spec.sleeping) options.calm_speed = static_cast<float>(kCalmSpeed * speed);
+  options.slow_vertices = spec.slow_vertices;
+  return options;
+}
+
 class Recovery {
  public:
   Recovery(const Pyramid& pyramid, const RecoverySpec& spec, const Schedule& schedule,
@@ -22,7 +32,7 @@ class Recovery {
         simd_(simd),
         hooks_(hooks),
         mesh_(mesh),
-        evolution_(mesh, schedule, simd, spec.model),
+        evolution_(mesh, schedule, simd, spec.model, evolution_options(spec)),
         levels_(static_cast<int>(pyramid.levels.size()) - 1) {}
 
   Status run(std::vector<LevelRecord>& records) {
@@ -31,11 +41,12 @@ class Recovery {
       records.back().level = h;
       if (Status s = recover_level(h, records.back()); !s.ok()) return s;
     }
-    mesh_.renumber(morton_order(mesh_));
+    renumber();
     return {};
   }
 
  private:
+  void renumber() { mesh_.renumber(spec_.renumbering ? morton_order(mesh_) : living_order(mesh_)); }
   // U_h / delta_h is the same on every level, within (14).
   double delta_of(int h) const { return unit_of(h) / kUnitPerDelta; }
   // U_h in mesh units.
@@ -119,7 +130,7 @@ class Recovery {
     const double target = delta_of(h);
     const auto steps = std::lround(std::log(mesh_.delta / target) / std::log(kRefinement));
     for (long i = 0; i < steps; ++i) {
-      refine(mesh_, schedule_);
+      refine(mesh_, schedule_, spec_.renumbering);
       ++record.operations.refinement;
     }
     mesh_.delta = target;
@@ -146,7 +157,7 @@ class Recovery {
         if (added) continue;
       }
       if (mesh_.vertex_count() == 0) return {};
-      mesh_.renumber(morton_order(mesh_));
+      renumber();
       evolution_.restart();
       const LevelVerdict verdict = hooks_.level ? hooks_.level(record) : LevelVerdict::kAccept;
       stopped_ = verdict == LevelVerdict::kStop;
@@ -158,6 +169,7 @@ class Recovery {
   // Until the level has converged, or for max_iterations.
   Status evolve(int h, LevelRecord& record) {
     int calm = 0;
+    Confirmation confirmation;
     double first_energy = 0;
     record.converged = false;
     for (int i = 1; i <= spec_.max_iterations && !record.converged; ++i) {
@@ -171,7 +183,7 @@ class Recovery {
       first_energy = std::max(first_energy, record.energy);
       const bool slow = spec_.calm_speed == 0 || record.speed < spec_.calm_speed;
       calm = record.energy < spec_.epsilon && slow ? calm + 1 : 0;
-      record.converged = i >= kMinIterations && calm >= kCalmIterations;
+      record.converged = confirmed(i, calm, confirmation);
       if (hooks_.progress && !hooks_.progress(progress(h, record, first_energy))) {
         return {ErrorCode::kCancelled, "cancelled"};
       }
@@ -180,6 +192,24 @@ class Recovery {
     evolution_.check_all(record.seconds, record.operations);
     record.vertices = mesh_.vertex_count();
     return verify(h, record);
+  }
+
+  // What sleeps tells nothing: all are woken, and only when they are calm the level has converged.
+  struct Confirmation {
+    int since = 0;       // iteration in which all were woken; 0: they were not
+    int not_before = 0;  // iteration in which they may be woken again
+  };
+  bool confirmed(int iteration, int calm, Confirmation& c) {
+    if (c.since != 0 && calm < iteration - c.since) {
+      c = {0, iteration + kConfirmPause};
+    }
+    if (iteration < kMinIterations || calm < kCalmIterations) return false;
+    if (c.since != 0) return iteration - c.since >= kConfirmIterations;
+    if (!evolution_.any_asleep()) return true;
+    if (iteration < c.not_before) return false;
+    evolution_.wake_all();
+    c.since = iteration;
+    return false;
   }
 
   // `added`: whether something had been missed.
@@ -202,7 +232,7 @@ class Recovery {
                           static_cast<double>(mm[2]);
     added = mesh_.vertex_count() != before;
     if (added) {
-      mesh_.renumber(morton_order(mesh_));
+      renumber();
       evolution_.restart();
     }
     record.seconds.topology += now() - start;
@@ -227,8 +257,8 @@ class Recovery {
   // Neighbours that are far apart in memory cost three times as much, and boxes over runs of ids
   // grow: when the new vertices are a sixteenth of all.
   void renumber_if_scattered() {
-    if (mesh_.created() <= mesh_.vertex_count() / 16) return;
-    mesh_.renumber(morton_order(mesh_));
+    if (!spec_.renumbering || mesh_.created() <= mesh_.vertex_count() / 16) return;
+    renumber();
     evolution_.restart();
   }
 

@@ -33,6 +33,9 @@ struct RecoverySpec {
   UserConstraints user;
   LevelForce force;  // may be empty
   bool late_bubbles = true;
+  bool sleeping = true;       // sleep.h; never with a user's force, which may change at any time
+  bool slow_vertices = true;  // 3.6; false: every vertex is checked in every iteration
+  bool renumbering = true;    // along a space-filling curve, at refinements and as ids scatter
   double epsilon = 5e-6;
   double calm_speed = 0;  // delta per time; 0: the energy alone tells
   int max_iterations = 2000;

@@ -111,9 +111,18 @@ std::vector<uint32_t> morton_order(const Mesh& mesh) {
   return order;
 }
 
-void refine(Mesh& mesh, const Executor& executor) {
+std::vector<uint32_t> living_order(const Mesh& mesh) {
+  std::vector<uint32_t> order;
+  order.reserve(mesh.vertex_count());
+  for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    if (mesh.alive(v)) order.push_back(v);
+  }
+  return order;
+}
+
+void refine(Mesh& mesh, const Executor& executor, bool renumbering) {
   // Old vertices get the low ids, without gaps, so that new and old are told apart by id.
-  mesh.renumber(morton_order(mesh));
+  mesh.renumber(renumbering ? morton_order(mesh) : living_order(mesh));
   const uint32_t old_slots = mesh.slots();
   mesh.reserve(old_slots * 3);
   const FaceVertices faces = create_face_vertices(mesh, old_slots);
@@ -142,7 +151,7 @@ void refine(Mesh& mesh, const Executor& executor) {
   }
   mesh.delta /= kRefinement;
   undo_where_meeting(mesh, old_slots, executor);
-  mesh.renumber(morton_order(mesh));
+  if (renumbering) mesh.renumber(morton_order(mesh));
   for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.wake(v);
 }
 

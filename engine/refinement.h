@@ -9,9 +9,12 @@ namespace plc {
 // faces would meet the surface elsewhere. Valid on any mesh of ours: its graph is simple, so no two
 // faces share two edges. delta is divided by sqrt 3, ids are renumbered along a Morton curve, every
 // vertex is due for a check.
-void refine(Mesh& mesh, const Executor& executor);
+// renumbering: false leaves the ids as they come, without gaps; for comparisons.
+void refine(Mesh& mesh, const Executor& executor, bool renumbering = true);
 
 // The living vertices along a Morton curve of cells of delta, ties by id.
 std::vector<uint32_t> morton_order(const Mesh& mesh);
+// ... in the order of their ids.
+std::vector<uint32_t> living_order(const Mesh& mesh);
 
 }  // namespace plc

@@ -71,22 +71,42 @@ void Resolution::run(uint32_t iteration, OperationCounts& counts) {
 
 const std::vector<uint32_t>& Resolution::take_due(bool check_all) {
   due_.clear();
-  pair_queue_.clear();
-  const float far = kCheckPath * static_cast<float>(mesh_.delta);
-  std::fill(mesh_.operations.begin(), mesh_.operations.end(), uint8_t{0});
   for (uint32_t v = 0; v < mesh_.slots(); ++v) {
-    if (!check_all && mesh_.path[v] < far && mesh_.idle[v] < kCheckPeriod) {
-      ++mesh_.idle[v];
-      continue;
+    if (mesh_.alive(v) && (check_all || is_due(v))) due_.push_back(v);
+  }
+  search_around_due(check_all);
+  return due_;
+}
+
+const std::vector<uint32_t>& Resolution::take_due(const std::vector<uint32_t>& awake) {
+  due_.clear();
+  for (const uint32_t block : awake) {
+    const uint32_t end = std::min((block + 1) * kRingLanes, mesh_.slots());
+    for (uint32_t v = block * kRingLanes; v < end; ++v) {
+      if (is_due(v) && mesh_.alive(v)) due_.push_back(v);
     }
-    if (!mesh_.alive(v)) continue;
+  }
+  search_around_due(false);
+  return due_;
+}
+
+// By the slow-vertex rule; counts its period. What sleeps, or might, has none.
+bool Resolution::is_due(uint32_t v) {
+  const float far = kCheckPath * static_cast<float>(mesh_.delta);
+  if (mesh_.path[v] >= far || mesh_.idle[v] >= kCheckPeriod) return true;
+  if (mesh_.calm[v] < kCalmPeriod) ++mesh_.idle[v];
+  return false;
+}
+
+void Resolution::search_around_due(bool all) {
+  pair_queue_.clear();
+  std::fill(mesh_.operations.begin(), mesh_.operations.end(), uint8_t{0});
+  for (const uint32_t v : due_) {
     mesh_.path[v] = 0;
     mesh_.idle[v] = 0;
-    due_.push_back(v);
   }
-  update_hash(check_all);
+  update_hash(all);
   surroundings_.search(due_, hash_);
-  return due_;
 }
 
 // A vertex is due before it has moved farther than the slack, and is entered anew then.
@@ -297,6 +317,7 @@ bool Resolution::apply(const Candidate& candidate, OperationCounts& counts) {
 void Resolution::involve(uint32_t v) {
   edge_queue_.push_back(v);
   pair_queue_.push_back(v);
+  mesh_.calm[v] = 0;
 }
 
 void Resolution::moved(uint32_t v) {

@@ -27,6 +27,8 @@ class Resolution {
   // in ascending order; their periods start anew. Also brings the hash up to date and searches what
   // is around those vertices.
   const std::vector<uint32_t>& take_due(bool check_all);
+  // Of the vertices of these blocks of kRingLanes only, ascending: those of sleep.h.
+  const std::vector<uint32_t>& take_due(const std::vector<uint32_t>& awake);
   SpatialHash& hash() { return hash_; }
   // What take_due() has found.
   const Surroundings& surroundings() const { return surroundings_; }
@@ -36,6 +38,8 @@ class Resolution {
   void run(uint32_t iteration, OperationCounts& counts);
 
  private:
+  bool is_due(uint32_t v);
+  void search_around_due(bool all);
   void update_hash(bool all);
   void queue_violated_edges();
   void resolve_edges(OperationCounts& counts);

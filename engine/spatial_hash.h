@@ -31,6 +31,17 @@ class SpatialHash {
   // Vertices that insert() has been called for since build().
   size_t inserted() const { return late_.size(); }
 
+  // The vertices within the box [low, high], some perhaps twice, and perhaps some that have been
+  // deleted; always in the same order. The other buffers are scratch memory.
+  struct Run {
+    uint32_t first, last;
+  };
+  struct Collected {
+    Buffer<uint32_t> ids;
+    Buffer<uint32_t> found;
+    Buffer<Run> runs;
+  };
+  void collect(const Mesh& mesh, Vec3 low, Vec3 high, Collected& out) const;
   // visit(id, position) for each living vertex within the box [low, high], perhaps twice; always in
   // the same order.
   template <typename Visit>
@@ -49,9 +60,14 @@ class SpatialHash {
   uint32_t bucket(Vec3 p) const {
     return (static_cast<uint32_t>(cell_of(p.x)) + row(cell_of(p.y), cell_of(p.z))) & mask_;
   }
-  // visit(id) for every entry of `run + 1` buckets from `first` on, and those in lists with them.
+  // visit(first bucket, number of buckets - 1) for each row of cells that the box may have entries
+  // in.
   template <typename Visit>
-  void visit_row(uint32_t first, uint32_t run, const Visit& visit) const;
+  void visit_rows(Vec3 low, Vec3 high, const Visit& visit) const;
+  // visit(b, last) for the runs of buckets b .. last that make up `run + 1` buckets from `first`
+  // on: two where the table's end lies between.
+  template <typename Visit>
+  void visit_runs(uint32_t first, uint32_t run, const Visit& visit) const;
 
   float inverse_cell_ = 1;
   float slack_ = 0;
@@ -69,16 +85,11 @@ class SpatialHash {
 };
 
 template <typename Visit>
-void SpatialHash::visit_row(uint32_t first, uint32_t run, const Visit& visit) const {
+void SpatialHash::visit_runs(uint32_t first, uint32_t run, const Visit& visit) const {
   for (uint32_t k = 0; k <= run;) {
     const uint32_t b = (first + k) & mask_;
     const uint32_t last = std::min(b + (run - k), mask_);
-    for (uint32_t i = start_[b]; i < start_[last + 1]; ++i) visit(entries_[i]);
-    if (!late_.empty()) {
-      for (uint32_t l = b >> kLateShift; l <= last >> kLateShift; ++l) {
-        for (uint32_t i = late_head_[l]; i != kEnd; i = late_[i].next) visit(late_[i].id);
-      }
-    }
+    visit(b, last);
     k += last - b + 1;
   }
 }
@@ -92,6 +103,19 @@ void SpatialHash::visit_box(const Mesh& mesh, Vec3 low, Vec3 high, Visit&& visit
       visit(v, Vec3{p.x, p.y, p.z});
     }
   };
+  visit_rows(low, high, [&](uint32_t first, uint32_t run) {
+    visit_runs(first, run, [&](uint32_t b, uint32_t last) {
+      for (uint32_t i = start_[b]; i < start_[last + 1]; ++i) look(entries_[i]);
+      if (late_.empty()) return;
+      for (uint32_t l = b >> kLateShift; l <= last >> kLateShift; ++l) {
+        for (uint32_t i = late_head_[l]; i != kEnd; i = late_[i].next) look(late_[i].id);
+      }
+    });
+  });
+}
+
+template <typename Visit>
+void SpatialHash::visit_rows(Vec3 low, Vec3 high, const Visit& visit) const {
   const int32_t x0 = cell_of(low.x - slack_);
   const uint32_t run = static_cast<uint32_t>(cell_of(high.x + slack_) - x0);
   const int32_t y0 = cell_of(low.y - slack_);
@@ -99,7 +123,7 @@ void SpatialHash::visit_box(const Mesh& mesh, Vec3 low, Vec3 high, Visit&& visit
   const int32_t z1 = cell_of(high.z + slack_);
   for (int32_t z = cell_of(low.z - slack_); z <= z1; ++z) {
     for (int32_t y = y0; y <= y1; ++y) {
-      visit_row((static_cast<uint32_t>(x0) + row(y, z)) & mask_, run, look);
+      visit((static_cast<uint32_t>(x0) + row(y, z)) & mask_, run);
     }
   }
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr size_t kTaskVertices = 256;
 // A group ends where its box would grow beyond this, in delta: what is around it is fetched once
 // but searched by each of its vertices.
-constexpr float kGroupExtent = 4;
+constexpr float kGroupExtent = 6;
 constexpr size_t kGroupVertices = 32;
 
 }  // namespace
@@ -23,7 +23,7 @@ constexpr size_t kGroupVertices = 32;
 struct Surroundings::Task {
   std::vector<VertexPair> too_near;
   std::vector<uint32_t> at_risk;
-  std::vector<uint32_t> ids;      // around the group
+  SpatialHash::Collected around;  // the group
   std::vector<float> streams[6];  // their places and normals
   std::vector<uint32_t> hits;
 };
@@ -37,9 +37,7 @@ void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& h
       const float reach = kRiskReach * static_cast<float>(mesh_.delta);
       const Vec3 span{reach, reach, reach};
       Task& task = tasks[index];
-      task.ids.clear();
-      hash.visit_box(mesh_, low - span, high + span,
-                     [&](uint32_t w, Vec3) { task.ids.push_back(w); });
+      hash.collect(mesh_, low - span, high + span, task.around);
       search_group(due.data() + i, count, task);
       i += count;
     }
@@ -71,13 +69,13 @@ size_t Surroundings::group_size(const uint32_t* due, size_t count, Vec3& low, Ve
 }
 
 void Surroundings::search_group(const uint32_t* due, size_t count, Task& task) const {
-  const auto around = static_cast<uint32_t>(task.ids.size());
+  const auto around = static_cast<uint32_t>(task.around.ids.size());
   const size_t padded = block_count(around, kRingLanes) * kRingLanes;
   for (auto& stream : task.streams) stream.resize(padded);
   task.hits.resize(around + kRingLanes);
   auto& [x, y, z, nx, ny, nz] = task.streams;
   for (uint32_t i = 0; i < around; ++i) {
-    const uint32_t w = task.ids[i];
+    const uint32_t w = task.around.ids[i];
     const Packed& p = mesh_.packed[w];
     x[i] = p.x, y[i] = p.y, z[i] = p.z;
     nx[i] = mesh_.normal.x[w], ny[i] = mesh_.normal.y[w], nz[i] = mesh_.normal.z[w];
@@ -102,8 +100,8 @@ void Surroundings::judge(uint32_t v, uint32_t hits, Task& task) const {
   bool risk = folded(mesh_, v, ring);
   for (uint32_t k = 0; k < hits; ++k) {
     const uint32_t i = task.hits[k];
-    const uint32_t w = task.ids[i];
-    if (w == v || ring.contains(w)) continue;
+    const uint32_t w = task.around.ids[i];
+    if (w == v || ring.contains(w) || !mesh_.alive(w)) continue;
     if (squared_distance(p, mesh_.at(w)) < near * near) {
       task.too_near.push_back({std::min(v, w), std::max(v, w)});
     }

@@ -1,5 +1,7 @@
 #include "kernels/nearby.h"
 
+#include <cstring>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/nearby.cpp"
 #include "hwy/foreach_target.h"
@@ -18,7 +20,6 @@ using scalar::near_or_turned;
 
 uint32_t near_or_turned(const NearbyView& view, const NearbyQuery& q, uint32_t* hits) {
   const FloatTag d;
-  const hn::RebindToUnsigned<FloatTag> du;
   const Floats3 place{hn::Set(d, q.x), hn::Set(d, q.y), hn::Set(d, q.z)};
   const Floats3 normal{hn::Set(d, q.nx), hn::Set(d, q.ny), hn::Set(d, q.nz)};
   uint32_t count = 0;
@@ -30,10 +31,15 @@ uint32_t near_or_turned(const NearbyView& view, const NearbyQuery& q, uint32_t* 
     const FloatMask turned =
         hn::Le(dot(load3(view.nx, view.ny, view.nz, i), normal), hn::Set(d, q.most));
     hit = hn::And(hit, hn::Or(turned, hn::Lt(squared, hn::Set(d, q.near_squared))));
-    const auto index = hn::Iota(du, i);
-    const auto valid = hn::Lt(index, hn::Set(du, view.count));
-    count += static_cast<uint32_t>(
-        hn::CompressStore(index, hn::And(hn::RebindMask(du, hit), valid), du, hits + count));
+    // Hits are few: their bits one by one cost less than compressing stores do.
+    uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, hit, bytes);
+    uint64_t bits;
+    std::memcpy(&bits, bytes, sizeof bits);
+    for (; bits != 0; bits &= bits - 1) {
+      hits[count] = i + static_cast<uint32_t>(__builtin_ctzll(bits));
+      count += static_cast<uint32_t>(hits[count] < view.count);
+    }
   }
   return count;
 }

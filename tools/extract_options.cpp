@@ -241,6 +241,15 @@ class Declarations {
         "--no-late-bubbles", [&p = p_] { p.late_bubbles = 0; },
         "Start no bubbles in parts and cavities that a level's surface has missed (the paper's "
         "behaviour); with --force gradient alone there are none");
+    command_.add_flag_callback(
+        "--no-sleeping", [&p = p_] { p.sleeping = 0; },
+        "Move all vertices in every iteration, those too where nothing has moved for long");
+    command_.add_flag_callback(
+        "--check-all", [&p = p_] { p.slow_vertices = 0; },
+        "Check the constraints of all vertices in every iteration, also of slow ones");
+    command_.add_flag_callback(
+        "--no-renumbering", [&p = p_] { p.renumbering = 0; },
+        "Do not number vertices along a space-filling curve: slower, for comparisons");
   }
 
   void machine() {

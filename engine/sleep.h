@@ -1,0 +1,49 @@
+// Regions where nothing has moved for long sleep whole, beyond the slow vertices of 3.6: they are
+// neither moved nor checked.
+//
+// A vertex is calm in an iteration in which it has moved less than the calm speed along its normal,
+// and less than kCalmSlide times that in all: sliding within the surface changes samples, not
+// shape. A block of kRingLanes vertices sleeps when all of them have been calm kCalmPeriod times in
+// a row. It is awake again when a transformation or the motion guard has touched one of them, when
+// a neighbour has moved kWakeMove along its normal since it last woke others, and when all are
+// woken: at the start of a level, and before a level may end. Nothing depends on threads.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "engine/mesh.h"
+#include "pyramid/executor.h"
+
+namespace plc {
+
+class Sleep {
+ public:
+  // calm_speed: delta per iteration; 0: nothing ever sleeps.
+  Sleep(Mesh& mesh, const Executor& executor, float calm_speed)
+      : mesh_(mesh), executor_(executor), calm_speed_(calm_speed) {}
+
+  // Chooses the blocks of the coming step. Those that fall asleep lose their velocities and
+  // displacements. all: every block, whatever has been.
+  void choose(bool all);
+  // Ascending block indices: vertices kRingLanes * block .. Those that have fallen asleep just now
+  // in the second list.
+  const std::vector<uint32_t>& awake() const { return awake_; }
+  const std::vector<uint32_t>& fallen() const { return fallen_; }
+  bool any_asleep() const { return awake_.size() * kRingLanes < mesh_.padded(); }
+  // After the step: who was calm, and who wakes its neighbours. Normals and displacements are those
+  // of the step.
+  void observe();
+  void wake_all();
+  // Ids have changed: everything that sleeps counts as fallen asleep just now.
+  void restart() { asleep_.clear(); }
+
+ private:
+  Mesh& mesh_;
+  const Executor& executor_;
+  float calm_speed_;
+  std::vector<uint32_t> awake_, fallen_;
+  std::vector<uint8_t> asleep_;                // by block
+  std::vector<std::vector<uint32_t>> wakers_;  // per task: vertices that wake their neighbours
+};
+
+}  // namespace plc
