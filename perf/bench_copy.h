@@ -29,6 +29,8 @@ inline void copy_mesh(const plc::Mesh& from, plc::Mesh& to) {
     to.displacement.set(w, from.displacement.at(v));
     to.path[w] = from.path[v];
     to.idle[w] = from.idle[v];
+    to.calm[w] = from.calm[v];
+    to.stir[w] = from.stir[v];
     to.risk[w] = from.risk[v];
     to.operations[w] = from.operations[v];
     to.cut_id[w] = from.cut_id[v];
