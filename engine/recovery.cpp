@@ -205,10 +205,12 @@ class Recovery {
     if (c.since != 0 && calm < iteration - c.since) {
       c = {0, iteration + kConfirmPause};
     }
-    if (iteration < kMinIterations || calm < kCalmIterations) return false;
-    if (c.since != 0) return iteration - c.since >= kConfirmIterations;
-    if (!evolution_.any_asleep()) return true;
-    if (iteration < c.not_before) return false;
+    if (calm < kCalmIterations) return false;
+    if (c.since != 0) {
+      return iteration >= kMinIterations && iteration - c.since >= kConfirmIterations;
+    }
+    if (!evolution_.any_asleep()) return iteration >= kMinIterations;
+    if (iteration < std::max(c.not_before, kMinIterations - kConfirmIterations)) return false;
     evolution_.wake_all();
     c.since = iteration;
     return false;
