@@ -23,7 +23,7 @@ Evolution::Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, cons
       slow_vertices_(options.slow_vertices),
       sleep_(mesh, schedule, options.calm_speed),
       dynamics_(mesh, schedule, simd, model),
-      guard_(mesh, schedule),
+      guard_(mesh, schedule, simd),
       resolution_(mesh, schedule, simd) {}
 
 void Evolution::restart() {
@@ -40,6 +40,7 @@ Status Evolution::iterate(const Guide& guide, Seconds& seconds, OperationCounts&
   const double moved = now();
   const auto& due =
       slow_vertices_ ? resolution_.take_due(sleep_.awake()) : resolution_.take_due(true);
+  guard_.find_folds(sleep_.awake_and_rim());
   guard_.assess(due, resolution_.surroundings().at_risk());
   back_.clear();
   counts.reverted += guard_.take_back(dynamics_.before(), resolution_.hash(), back_);

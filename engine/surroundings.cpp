@@ -102,7 +102,7 @@ void Surroundings::judge(uint32_t v, uint32_t hits, Task& task) const {
   const Vec3 p = mesh_.at(v), n = mesh_.normal.at(v);
   const float near = kMinApart * static_cast<float>(mesh_.delta);
   const Neighbors ring = mesh_.ring(v);
-  bool risk = folded(mesh_, v, ring);
+  bool risk = false;
   for (uint32_t k = 0; k < hits; ++k) {
     const uint32_t i = task.hits[k];
     const uint32_t w = task.around.ids[i];
