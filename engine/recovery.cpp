@@ -43,7 +43,7 @@ class Recovery {
       if (Status s = recover_level(h, records.back()); !s.ok()) return s;
       pyramid_.levels[static_cast<size_t>(h)].values = Buffer<float>();  // not needed any more
     }
-    renumber();
+    if (!mesh_.in_order()) renumber();
     return {};
   }
 
