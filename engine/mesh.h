@@ -94,6 +94,8 @@ class Mesh {
   void reserve(uint32_t vertices);
   // Vertices created since the ids were last renumbered: how far ids have strayed from space order.
   uint32_t created() const { return created_; }
+  // Of deleted vertices; create() takes the last one.
+  const std::vector<uint32_t>& free_ids() const { return free_; }
   // New ids: new id = rank of v in `order`, which lists every living vertex once. Nothing but the
   // ids changes.
   void renumber(const std::vector<uint32_t>& order);

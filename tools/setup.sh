@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian packages that the named purposes need:
-#   tools/setup.sh [build] [test] [demo] [lint] [perf]
+#   tools/setup.sh [build] [test] [demo] [lint] [compilers] [perf]
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
 
@@ -9,6 +9,7 @@ build=(g++ cmake make libhwy-dev libtbb-dev libmimalloc-dev libinsighttoolkit5-d
 test=(catch2 invesalius-examples)
 demo=(invesalius-examples)
 lint=(clang-format clang-tidy)
+compilers=(clang)
 perf=(jq gnuplot-nox invesalius-examples)
 
 wanted=()
@@ -18,8 +19,9 @@ for purpose in "$@"; do
     test) wanted+=("${test[@]}") ;;
     demo) wanted+=("${demo[@]}") ;;
     lint) wanted+=("${lint[@]}") ;;
+    compilers) wanted+=("${compilers[@]}") ;;
     perf) wanted+=("${perf[@]}") ;;
-    *) echo "setup.sh: unknown purpose $purpose: build, test, demo, lint or perf" >&2; exit 2 ;;
+    *) echo "setup.sh: unknown purpose $purpose: build, test, demo, lint, compilers or perf" >&2; exit 2 ;;
   esac
 done
 
