@@ -78,21 +78,21 @@ plc_parameters chain_parameters() {
   return p;
 }
 
-// Blobs that hold cavities: shrink-wrapping the one leaves the others to late bubbles.
-samples::Volume caverns(std::array<int64_t, 3> dims) {
+// Blobs that are hollow where they are densest: what shrink-wrapping leaves to late bubbles.
+samples::Volume hollow_blobs(std::array<int64_t, 3> dims) {
   samples::Volume all = samples::blobs(samples::empty_volume(dims), 24, 3);
-  const samples::Volume holes = samples::blobs(samples::empty_volume(dims), 12, 5);
-  for (size_t i = 0; i < all.values.size(); ++i) {
-    all.values[i] = std::min(all.values[i], 1 - holes.values[i]);
+  for (float& value : all.values) {
+    if (value > 0.75F) value = std::max(0.0F, value - (value - 0.75F) * 5);
   }
+  samples::add_noise(all, 0.05, 9);
   return all;
 }
 
 // Large enough for the parallel path, through two levels: sleepers beside moving vertices, cuts and
 // joins, late bubbles.
 Run large_run() {
-  Run run = samples::make_run("caverns", caverns({72, 72, 72}), 0.4, 1);
-  run.recovery.max_iterations = 60;
+  Run run = samples::make_run("hollow blobs", hollow_blobs({64, 64, 64}), 0.4, 1);
+  run.recovery.max_iterations = 110;
   run.recovery.epsilon = 1e-4;
   return run;
 }
@@ -101,7 +101,7 @@ Run large_run() {
 Run forces_run() {
   Run run = samples::make_run("forces", samples::blobs(samples::empty_volume({64, 64, 64}), 24, 3),
                               0.4, 0);
-  run.recovery.max_iterations = 20;
+  run.recovery.max_iterations = 12;
   run.recovery.model.spring = 0.01F;
   run.recovery.model.gradient_normal = 0.1F;
   run.recovery.model.bound = plc::Bound::kScale;
@@ -144,10 +144,10 @@ TEST_CASE("the chain has the recorded hash for any threads and SIMD target", "[d
 TEST_CASE("a large run has the recorded hash for any threads and SIMD target, run after run",
           "[determinism]") {
   const Run run = large_run();
-  constexpr uint64_t kGolden = 0x0;
+  constexpr uint64_t kGolden = 0xD4ABB91F1D51B794;
   for (const SimdTarget target : plc::available_simd_targets()) {
     for (const int threads : kThreads) {
-      for (int repeat = 0; repeat < (threads == 1 ? 1 : 2); ++repeat) {
+      for (int repeat = 0; repeat < (threads == 3 ? 2 : 1); ++repeat) {
         CAPTURE(plc::simd_target_name(target), threads, repeat);
         CHECK(hash_of(run, threads, target) == kGolden);
       }
@@ -158,7 +158,7 @@ TEST_CASE("a large run has the recorded hash for any threads and SIMD target, ru
 TEST_CASE("a run with every force has the recorded hash for any threads and SIMD target",
           "[determinism]") {
   const Run run = forces_run();
-  constexpr uint64_t kGolden = 0x0;
+  constexpr uint64_t kGolden = 0x31049F78E9CCA171;
   for (const SimdTarget target : plc::available_simd_targets()) {
     for (const int threads : kThreads) {
       CAPTURE(plc::simd_target_name(target), threads);
@@ -179,13 +179,11 @@ TEST_CASE("no pass of a large run tells one scalar thread from three of the best
     operations.annular += record.operations.annular;
     operations.axial += record.operations.axial;
     operations.inversion += record.operations.inversion;
-    operations.reverted += record.operations.reverted;
     late += record.late.bubbles + record.late.cavities;
   }
   CHECK(operations.annular > 0);
   CHECK(operations.axial > 0);
   CHECK(operations.inversion > 0);
-  CHECK(operations.reverted > 0);
   CHECK(late > 0);
   CHECK(samples::first_difference(one, samples::traced(run, 3, plc::best_simd_target())) == "");
 }
@@ -201,6 +199,7 @@ TEST_CASE("no pass of a run with every force tells one scalar thread from three 
 TEST_CASE("no pass of random runs tells one scalar thread from three of the best target",
           "[determinism]") {
   int compared = 0;
+  int64_t reverted = 0;
   for (uint64_t seed = 1000; compared < 6; ++seed) {
     Run run = samples::random_run(seed);
     run.recovery.max_iterations = 30;
@@ -214,8 +213,10 @@ TEST_CASE("no pass of random runs tells one scalar thread from three of the best
       continue;  // the object is lost
     }
     ++compared;
+    for (const plc::LevelRecord& record : records) reverted += record.operations.reverted;
     INFO(run.name);
     CHECK(samples::first_difference(samples::traced(run, 1, SimdTarget::kScalar),
                                     samples::traced(run, 3, plc::best_simd_target())) == "");
   }
+  CHECK(reverted > 0);
 }
