@@ -122,7 +122,8 @@ bool Dynamics::moves_at_once(const Guide& guide) const {
          (guide.user == nullptr || guide.user->pins.empty());
 }
 
-Status Dynamics::step(const Guide& guide, Seconds& seconds, const Sleep* sleep) {
+Status Dynamics::step(const Guide& guide, Seconds& seconds, const Sleep* sleep,
+                      const PassEnd& after) {
   resize(guide);
   choose_blocks(sleep);
   const bool user_force = guide.user != nullptr && guide.user->force;
@@ -130,7 +131,7 @@ Status Dynamics::step(const Guide& guide, Seconds& seconds, const Sleep* sleep) 
   status_ = {};
   // In order, the user's force is called on the calling thread.
   schedule_.run_passes(passes(guide, seconds),
-                       user_force || blocks_.size() * kRingLanes < kSerialBelow);
+                       user_force || blocks_.size() * kRingLanes < kSerialBelow, after);
   end_step();
   return status_;
 }
@@ -157,23 +158,24 @@ std::vector<Pass> Dynamics::passes(const Guide& guide, Seconds& seconds) {
 
 void Dynamics::add_stage(int stage, const Guide& guide, Seconds& seconds,
                          std::vector<Pass>& table) {
+  const auto numbered = [stage](std::string name) { return name += std::to_string(stage + 1); };
   if (model_.curvature > 0 && stage > 0) {
-    table.push_back({"laplacian", kRings | kPositions | kStages, kLaplacians, &seconds.dynamics,
-                     [this, stage] { laplacians(stage); }});
+    table.push_back({numbered("laplacian "), kRings | kPositions | kStages, kLaplacians,
+                     &seconds.dynamics, [this, stage] { laplacians(stage); }});
   }
   if (guide.user != nullptr && guide.user->force) {
-    table.push_back({"user force", kRings | kPositions | kNormals | kStages, kUserForce,
+    table.push_back({numbered("user force "), kRings | kPositions | kNormals | kStages, kUserForce,
                      &seconds.dynamics, [this, stage, guide] { user_force(stage, guide); }});
   }
   constexpr uint32_t kRead =
       kRings | kPositions | kVelocities | kNormals | kRestLength | kLaplacians | kUserForce;
   if (stage == 3 && moves_at_once(guide)) {
-    table.push_back({"stage and move", kRead,
+    table.push_back({"stage 4 and move", kRead,
                      kStages | kDisplacements | kPositions | kVelocities | kEnergy,
                      &seconds.dynamics, [this, guide] { last_stage_and_move(guide); }});
     return;
   }
-  table.push_back({"stage", kRead, kStages | kDisplacements, &seconds.dynamics,
+  table.push_back({numbered("stage "), kRead, kStages | kDisplacements, &seconds.dynamics,
                    [this, stage, guide] { run_stage(stage, guide); }});
 }
 

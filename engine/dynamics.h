@@ -6,6 +6,7 @@
 #include "engine/mesh.h"
 #include "engine/schedule.h"
 #include "engine/sleep.h"
+#include "engine/state_hash.h"
 #include "engine/statistics.h"
 #include "kernels/blocks.h"
 #include "kernels/guided_stage.h"
@@ -57,14 +58,17 @@ class Dynamics {
 
   // Moves every vertex that does not sleep once (no sleep: all); displacement, velocity, normal and
   // path of the mesh are written. Fails where the user's force does; the surface is then where it
-  // was, or somewhere on the way.
-  Status step(const Guide& guide, Seconds& seconds, const Sleep* sleep = nullptr);
+  // was, or somewhere on the way. `after`: as in Schedule::run_passes.
+  Status step(const Guide& guide, Seconds& seconds, const Sleep* sleep = nullptr,
+              const PassEnd& after = {});
   // Mean of m (dx . n / (delta dt))^2 / 2 over the vertices, of the last step.
   double energy() const { return energy_; }
   // The longest movement of the last step, in delta per time.
   double speed() const { return speed_of_fastest_; }
   // Positions before the last step.
   const Buffer<Packed>& before() const { return stage_[0]; }
+  // What it holds beside the mesh.
+  void append_hashes(std::vector<PartHash>& hashes) const;
 
  private:
   void resize(const Guide& guide);

@@ -35,17 +35,26 @@ Status Evolution::iterate(const Guide& guide, Seconds& seconds, OperationCounts&
   const double start = now();
   // The user's force may change at any time.
   sleep_.choose(guide.user != nullptr && guide.user->force);
-  if (Status s = dynamics_.step(guide, seconds, &sleep_); !s.ok()) return s;
+  passed("sleep");
+  PassEnd after;
+  if (observer_) after = [this](const std::string& names) { passed(names); };
+  if (Status s = dynamics_.step(guide, seconds, &sleep_, after); !s.ok()) return s;
+  passed("energy");
   sleep_.observe();
+  passed("calm");
   const double moved = now();
   const auto& due =
       slow_vertices_ ? resolution_.take_due(sleep_.awake()) : resolution_.take_due(true);
+  passed("due, hash, surroundings");
   guard_.find_folds(sleep_.awake_and_rim());
   guard_.assess(due, resolution_.surroundings().at_risk());
+  passed("risk");
   back_.clear();
   counts.reverted += guard_.take_back(dynamics_.before(), resolution_.hash(), back_);
+  passed("motion guard");
   resolution_.add_due(back_);
   resolution_.run(++iteration_, counts);
+  passed("resolution");
   assert(sound(mesh_, schedule_));
   const double end = now();
   seconds.topology += end - moved;
@@ -57,6 +66,7 @@ void Evolution::check_all(Seconds& seconds, OperationCounts& counts) {
   const double start = now();
   resolution_.take_due(true);
   resolution_.run(++iteration_, counts);
+  passed("check of all");
   const double end = now();
   seconds.topology += end - start;
   seconds.total += end - start;
@@ -70,7 +80,24 @@ bool Evolution::embedded() {
       mesh_.wake(v);
     }
   }
+  passed("embedded");
   return meeting.empty();
+}
+
+std::vector<PartHash> Evolution::hashes() const {
+  std::vector<PartHash> all = part_hashes(mesh_);
+  dynamics_.append_hashes(all);
+  const Surroundings& around = resolution_.surroundings();
+  Fnv near;
+  for (const VertexPair& pair : around.too_near()) {
+    near.add(pair.u);
+    near.add(pair.w);
+  }
+  all.insert(all.end(), {part_hash("fallen asleep", sleep_.fallen()),
+                         {"too near", near.value()},
+                         part_hash("at risk", around.at_risk()),
+                         part_hash("taken back", back_)});
+  return all;
 }
 
 }  // namespace plc

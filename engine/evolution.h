@@ -2,6 +2,7 @@
 #pragma once
 #include "engine/dynamics.h"
 #include "engine/motion_guard.h"
+#include "engine/pass_observer.h"
 #include "engine/resolution.h"
 #include "engine/schedule.h"
 #include "engine/sleep.h"
@@ -39,6 +40,17 @@ class Evolution {
   // The longest movement of the last iteration, in delta per time.
   double speed() const { return dynamics_.speed(); }
 
+  // For tests. Empty: nobody looks, which costs nothing.
+  void set_observer(PassObserver observer) { observer_ = std::move(observer); }
+  // Tells the observer; also of passes that are none of an iteration.
+  void passed(const std::string& pass) const {
+    if (observer_) observer_(pass, *this);
+  }
+  // The state as it is now, part by part: between passes all that the next ones read.
+  std::vector<PartHash> hashes() const;
+  // Vertices, padding included, in blocks that took part in the last iteration.
+  size_t awake() const { return sleep_.awake().size() * kRingLanes; }
+
  private:
   Mesh& mesh_;
   const Schedule& schedule_;
@@ -49,6 +61,7 @@ class Evolution {
   Resolution resolution_;
   std::vector<uint32_t> back_;  // vertices that the guard has taken back
   uint32_t iteration_ = 0;
+  PassObserver observer_;
 };
 
 }  // namespace plc

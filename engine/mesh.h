@@ -96,6 +96,8 @@ class Mesh {
   uint32_t created() const { return created_; }
   // No id was created or freed since then.
   bool in_order() const { return created_ == 0 && alive_ == slots_; }
+  // Of deleted vertices; create() takes the last one.
+  const std::vector<uint32_t>& free_ids() const { return free_; }
   // New ids: new id = rank of v in `order`, which lists every living vertex once. Nothing but the
   // ids changes.
   void renumber(const std::vector<uint32_t>& order);

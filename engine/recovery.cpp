@@ -34,7 +34,9 @@ class Recovery {
         hooks_(hooks),
         mesh_(mesh),
         evolution_(mesh, schedule, simd, spec.model, evolution_options(spec)),
-        levels_(static_cast<int>(pyramid_.levels.size()) - 1) {}
+        levels_(static_cast<int>(pyramid_.levels.size()) - 1) {
+    evolution_.set_observer(hooks.pass);
+  }
 
   Status run(std::vector<LevelRecord>& records) {
     for (int h = levels_; h >= 0 && !stopped_; --h) {
@@ -48,7 +50,10 @@ class Recovery {
   }
 
  private:
-  void renumber() { mesh_.renumber(spec_.renumbering ? morton_order(mesh_) : living_order(mesh_)); }
+  void renumber() {
+    mesh_.renumber(spec_.renumbering ? morton_order(mesh_) : living_order(mesh_));
+    evolution_.passed("ids");
+  }
   // U_h / delta_h is the same on every level, within (14).
   double delta_of(int h) const { return unit_of(h) / kUnitPerDelta; }
   // U_h in mesh units.
@@ -68,6 +73,7 @@ class Recovery {
           !s.ok()) {
         return s;
       }
+      evolution_.passed("start");
     }
     if (mesh_.vertex_count() != 0) {
       if (Status s = recover_shape(h, fresh, record); !s.ok()) return s;
@@ -138,6 +144,7 @@ class Recovery {
     mesh_.delta = target;
     for (uint32_t v = 0; v < mesh_.slots(); ++v) mesh_.wake(v);
     evolution_.restart();
+    evolution_.passed("refinement");
     record.delta = target;
     record.seconds.topology += now() - start;
     record.seconds.total += now() - start;
@@ -229,6 +236,7 @@ class Recovery {
         !s.ok()) {
       return s;
     }
+    evolution_.passed("late bubbles");
     const auto& mm = user_.millimetres;
     record.late.bubbles += late.bubbles;
     record.late.cavities += late.cavities;

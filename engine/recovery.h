@@ -9,6 +9,7 @@
 #include "engine/level_start.h"
 #include "engine/mesh.h"
 #include "engine/mesh_space.h"
+#include "engine/pass_observer.h"
 #include "engine/resolution.h"
 #include "engine/schedule.h"
 #include "engine/statistics.h"
@@ -68,6 +69,8 @@ struct RecoveryHooks {
   // without gaps in the ids. kMore: up to max_iterations more. kStop: the recovery ends here. May
   // be empty.
   std::function<LevelVerdict(const LevelRecord&)> level;
+  // After every pass. For tests; may be empty.
+  PassObserver pass{};
 };
 
 // Evolves `mesh` from the coarsest level of the pyramid to I_0; records gets one entry per level,

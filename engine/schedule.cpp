@@ -53,32 +53,40 @@ size_t wave_end(const std::vector<Pass>& passes, size_t begin) {
   return end;
 }
 
+std::string names(const std::vector<Pass>& passes, size_t begin, size_t end) {
+  std::string all = passes[begin].name;
+  for (size_t i = begin + 1; i < end; ++i) all.append(", ").append(passes[i].name);
+  return all;
+}
+
 }  // namespace
 
 // The graph of the table by its levels. Its passes are loops over all vertices and nearly a chain:
 // nodes and edges built anew for every step would buy nothing over this.
-void Schedule::run_passes(const std::vector<Pass>& passes, bool small) const {
-  const auto timed = [](const Pass& pass) {
-    const double start = now();
-    pass.body();
-    return now() - start;
-  };
-  if (small || arena_ == nullptr) {
-    for (const Pass& pass : passes) *pass.seconds += timed(pass);
-    return;
-  }
+void Schedule::run_passes(const std::vector<Pass>& passes, bool small, const PassEnd& after) const {
+  const bool serial = small || arena_ == nullptr;
   std::vector<double> seconds(passes.size(), 0);
-  arena_->tbb.execute([&] {
+  const auto run = [&](size_t i) {
+    const double start = now();
+    passes[i].body();
+    seconds[i] = now() - start;
+  };
+  const auto run_waves = [&] {
     for (size_t begin = 0, end = 0; begin < passes.size(); begin = end) {
       end = wave_end(passes, begin);
-      const auto run = [&](size_t i) { seconds[i] = timed(passes[i]); };
-      if (end - begin == 1) {
-        run(begin);
+      if (serial || end - begin == 1) {
+        for (size_t i = begin; i < end; ++i) run(i);
       } else {
         oneapi::tbb::parallel_for(begin, end, run, oneapi::tbb::simple_partitioner());
       }
+      if (after) after(names(passes, begin, end));
     }
-  });
+  };
+  if (serial) {
+    run_waves();
+  } else {
+    arena_->tbb.execute(run_waves);
+  }
   for (size_t i = 0; i < passes.size(); ++i) *passes[i].seconds += seconds[i];
 }
 

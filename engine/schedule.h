@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "pyramid/executor.h"
@@ -26,12 +27,16 @@ enum Resource : uint32_t {
 // One row of the table of passes. Passes keep their order where one writes what the other reads or
 // writes; where not, they may run at the same time.
 struct Pass {
-  const char* name;
+  std::string name;
   uint32_t reads;
   uint32_t writes;
   double* seconds;  // where the time of the pass is added; not null, may be shared
   std::function<void()> body;
 };
+
+// Of the passes that have just ended: their names, with ", " between those that may run at the same
+// time.
+using PassEnd = std::function<void(const std::string& names)>;
 
 // The worker threads of one context. Loops and graphs run in an arena of their own.
 class Schedule final : public Executor {
@@ -43,8 +48,9 @@ class Schedule final : public Executor {
 
   // With one thread, or one task, on the calling thread.
   void run(size_t tasks, const std::function<void(size_t)>& body) const override;
-  // Runs the table. `small`: in order, on the calling thread, without paying for a graph.
-  void run_passes(const std::vector<Pass>& passes, bool small) const;
+  // Runs the table. `small`: in order, on the calling thread. `after`, which may be empty, is
+  // called at the same places of the table for any number of threads, while no pass runs.
+  void run_passes(const std::vector<Pass>& passes, bool small, const PassEnd& after = {}) const;
 
  private:
   struct Arena;

@@ -57,7 +57,7 @@ float sample(const ImageView& image, const Packed& p) {
   const AxisCell z = axis_cell(p.z, image.scale[2], image.offset[2], image.dims[2]);
   constexpr bool kUnit = std::is_same_v<Voxel, UnitVoxel>;
   const int32_t pad = kUnit ? 0 : image.form.pad;
-  const auto stored = [pad](const AxisCell& c, int32_t dim) {
+  const auto stored = [&](const AxisCell& c, int32_t dim) {
     return c.index >= pad && c.index < dim - pad - 1;
   };
   if (!kUnit &&

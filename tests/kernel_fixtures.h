@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels/ring.h"
+#include "kernels/separable.h"
 #include "kernels/simd.h"
 #include "pyramid/executor.h"
 
@@ -114,6 +115,21 @@ inline RandomRings mixed_rings(uint32_t blocks, uint32_t seed) {
             return v % 16 == 5 ? random_integer(random, 12, 30) : random_integer(random, 3, 10);
           }};
 }
+
+// Any taps: irregular first places, random weights.
+struct Taps {
+  std::vector<int32_t> first;
+  std::vector<float> weights;
+  plc::kernels::TapsView view;
+  Taps(size_t inputs, size_t outputs, int32_t taps, uint32_t seed)
+      : weights(random_floats(outputs * static_cast<size_t>(taps), 0.0F, 0.4F, seed)) {
+    const size_t last = inputs - static_cast<size_t>(taps);
+    for (size_t i = 0; i < outputs; ++i) {
+      first.push_back(static_cast<int32_t>(outputs == 1 ? last : i * last / (outputs - 1)));
+    }
+    view = {first.data(), weights.data(), taps};
+  }
+};
 
 class ThreadExecutor final : public plc::Executor {
  public:

@@ -147,6 +147,35 @@ TEST_CASE("passes that touch nothing of each other run at the same time", "[sche
   CHECK(met[1]);
 }
 
+TEST_CASE("who waits for passes to end is told the same for any threads, when none runs",
+          "[schedule]") {
+  for (const bool small : {true, false}) {
+    for (const int threads : kThreads) {
+      const Schedule schedule(threads);
+      double seconds = 0;
+      std::atomic<int> ended{0};
+      const auto pass = [&](const char* name, uint32_t reads, uint32_t writes) {
+        return Pass{name, reads, writes, &seconds, [&] {
+                      pause(2);
+                      ++ended;
+                    }};
+      };
+      std::vector<std::string> told;
+      std::vector<int> count;
+      schedule.run_passes(
+          {pass("normals", 0, plc::kNormals), pass("rest length", 0, plc::kRestLength),
+           pass("stage", plc::kNormals, plc::kStages)},
+          small, [&](const std::string& names) {
+            told.push_back(names);
+            count.push_back(ended);
+          });
+      CAPTURE(threads, small);
+      CHECK(told == std::vector<std::string>{"normals, rest length", "stage"});
+      CHECK(count == std::vector<int>{2, 3});
+    }
+  }
+}
+
 TEST_CASE("small passes run on the calling thread", "[schedule]") {
   const Schedule schedule(3);
   double seconds = 0;

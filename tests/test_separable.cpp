@@ -15,21 +15,6 @@ using plc::kernels::TapsView;
 namespace kernels = plc::kernels;
 namespace scalar = plc::kernels::scalar;
 
-// Any taps: irregular first places, random weights.
-struct Taps {
-  std::vector<int32_t> first;
-  std::vector<float> weights;
-  TapsView view;
-  Taps(size_t inputs, size_t outputs, int32_t taps, uint32_t seed)
-      : weights(random_floats(outputs * static_cast<size_t>(taps), 0.0F, 0.4F, seed)) {
-    const size_t last = inputs - static_cast<size_t>(taps);
-    for (size_t i = 0; i < outputs; ++i) {
-      first.push_back(static_cast<int32_t>(outputs == 1 ? last : i * last / (outputs - 1)));
-    }
-    view = {first.data(), weights.data(), taps};
-  }
-};
-
 double expected_sum(const TapsView& taps, size_t output, const float* in, size_t step) {
   double sum = 0;
   for (int32_t k = 0; k < taps.taps; ++k) {

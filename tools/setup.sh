@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian packages that the named purposes need:
-#   tools/setup.sh [build] [test] [demo] [lint] [perf] [peers]
+#   tools/setup.sh [build] [test] [demo] [lint] [compilers] [perf] [peers]
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
 
@@ -9,6 +9,7 @@ build=(g++ cmake make libhwy-dev libtbb-dev libmimalloc-dev libinsighttoolkit5-d
 test=(catch2 invesalius-examples jq)
 demo=(invesalius-examples)
 lint=(clang-format clang-tidy)
+compilers=(clang)
 perf=(jq gnuplot-nox invesalius-examples libbenchmark-dev)
 peers=(libvtk9-dev libcgal-dev)  # programs that perf/run compares with
 
@@ -19,9 +20,10 @@ for purpose in "$@"; do
     test) wanted+=("${test[@]}") ;;
     demo) wanted+=("${demo[@]}") ;;
     lint) wanted+=("${lint[@]}") ;;
+    compilers) wanted+=("${compilers[@]}") ;;
     perf) wanted+=("${perf[@]}") ;;
     peers) wanted+=("${peers[@]}") ;;
-    *) echo "setup.sh: unknown purpose $purpose: build, test, demo, lint, perf or peers" >&2; exit 2 ;;
+    *) echo "setup.sh: unknown purpose $purpose: build, test, demo, lint, compilers, perf or peers" >&2; exit 2 ;;
   esac
 done
 
