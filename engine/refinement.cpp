@@ -79,7 +79,9 @@ FaceVertices create_face_vertices(Mesh& mesh, uint32_t old_slots) {
 // The old edges come back where the inverted ones make the surface meet itself: the faces of before
 // did not. Each round gives back the edges of all faces that meet; with all given back none is
 // left.
-void undo_where_meeting(Mesh& mesh, uint32_t old_slots, const Executor& executor) {
+// of_face: by id, whether a vertex was created in a face.
+void undo_where_meeting(Mesh& mesh, const std::vector<uint8_t>& of_face,
+                        const Executor& executor) {
   for (;;) {
     const auto meeting = meeting_faces(mesh, executor);
     bool undone = false;
@@ -87,7 +89,7 @@ void undo_where_meeting(Mesh& mesh, uint32_t old_slots, const Executor& executor
       for (uint32_t i = 0; i < 3; ++i) {
         const uint32_t c = face[i];
         const uint32_t d = face[(i + 1) % 3];
-        if (c < old_slots || d < old_slots || !mesh.alive(c) || !mesh.adjacent(c, d)) continue;
+        if (of_face[c] == 0 || of_face[d] == 0 || !mesh.adjacent(c, d)) continue;
         invert_edge(mesh, edge_between(mesh, c, d));
         undone = true;
       }
@@ -150,8 +152,12 @@ void refine(Mesh& mesh, const Executor& executor, bool renumbering) {
     mesh.set_ring(v, ring);
   }
   mesh.delta /= kRefinement;
-  undo_where_meeting(mesh, old_slots, executor);
-  if (renumbering) mesh.renumber(morton_order(mesh));
+  // Searches for faces that meet are fast where ids follow space.
+  const auto order = renumbering ? morton_order(mesh) : living_order(mesh);
+  std::vector<uint8_t> of_face(order.size());
+  for (size_t i = 0; i < order.size(); ++i) of_face[i] = order[i] >= old_slots ? 1 : 0;
+  mesh.renumber(order);
+  undo_where_meeting(mesh, of_face, executor);
   for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.wake(v);
 }
 

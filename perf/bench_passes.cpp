@@ -12,6 +12,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <thread>
 
 #include "engine/evolution.h"
@@ -199,11 +200,11 @@ void add_guard(Suite& suite, const Mesh& start) {
       Parts(Bench& bench, const plc::Model& model)
           : dynamics(bench.mesh, bench.schedule, kSimd, model),
             resolution(bench.mesh, bench.schedule, kSimd),
-            guard(bench.mesh, bench.schedule) {}
+            guard(bench.mesh, bench.schedule, kSimd) {}
       plc::Dynamics dynamics;
       plc::Resolution resolution;
       plc::MotionGuard guard;
-      std::vector<uint32_t> due, back;
+      std::vector<uint32_t> blocks, due, back;
     };
     auto parts = std::make_shared<Parts>(b, suite.head().recovery.model);
     const auto prepare = [&b, &suite, parts] {
@@ -213,9 +214,12 @@ void add_guard(Suite& suite, const Mesh& start) {
       (void)parts->dynamics.step(suite.head().guide, seconds).ok();
       parts->due = parts->resolution.take_due(true);
       parts->back.clear();
+      parts->blocks.resize(b.mesh.padded() / plc::kRingLanes);
+      std::iota(parts->blocks.begin(), parts->blocks.end(), 0U);
     };
     const auto measured = [parts] {
       return timed([&] {
+        parts->guard.find_folds(parts->blocks);
         parts->guard.assess(parts->due, parts->resolution.surroundings().at_risk());
         parts->guard.take_back(parts->dynamics.before(), parts->resolution.hash(), parts->back);
       });
@@ -278,7 +282,7 @@ void add_missed_places(Suite& suite, const Mesh& start) {
     const auto measured = [&suite, &b, count] {
       const plc::Guide& guide = suite.head().guide;
       const auto delta = static_cast<float>(b.mesh.delta);
-      plc::Buffer<uint8_t> tried;
+      plc::VoxelSet tried;
       return timed([&] {
         *count = plc::find_missed_places(b.mesh, guide.image, guide.iso, true, 3 * delta,
                                          plc::kSmallestBubble * delta, b.schedule, tried)
