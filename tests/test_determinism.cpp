@@ -117,8 +117,8 @@ uint64_t hash_of(const Run& run, int threads, SimdTarget target) {
   const plc::Schedule schedule(threads);
   Mesh mesh;
   std::vector<plc::LevelRecord> records;
-  REQUIRE(plc::pyramidal_recover_shape(samples::pyramid_of(run, schedule, target), run.recovery, schedule,
-                                       target, {}, mesh, records)
+  REQUIRE(plc::pyramidal_recover_shape(samples::pyramid_of(run, schedule, target), run.recovery,
+                                       schedule, target, {}, mesh, records)
               .message() == "");
   return plc::state_hash(mesh);
 }
