@@ -1,4 +1,38 @@
 // Threads: parallel loops and the task graph of a step. The only file pair that names oneTBB.
+//
+// The determinism contract: the same input and parameters give the same bits for any number of
+// threads, on any SIMD target, by GCC and Clang, run after run. It holds by construction, as long
+// as everything that changes the surface keeps to this:
+//
+//   Loops      Gather, never scatter: a task writes what belongs to its own vertices and reads what
+//              no task of the pass writes. Tasks are fixed blocks (blocks.h, kGrain), whatever the
+//              number of threads. Nothing asks which thread it is on, how many there are, what time
+//              it is, or in which order tasks ended. kSerialBelow chooses who runs the tasks, never
+//              what they are.
+//   Sums       Over a block in the order of lane_sum.h, over blocks from the first to the last.
+//              No atomics on floats, no reduction by the thread library.
+//   Order      What tasks have found is joined in the order of tasks. Sorts have total keys: two
+//              that compare equal mean the same. Nothing is ordered by addresses or by the places
+//              of a hash table. Operations are applied in that order on one thread; ids are taken
+//              from the free list, and given out anew along the Morton curve, ties by old id.
+//   Rounding   Every operation rounds once, in the order written: -ffp-contract=off, no MulAdd, no
+//              approximate reciprocal or root, no -ffast-math, no -march. A kernel has the bits of
+//              its scalar twin on every target (kernels/scalar.h), tails, padding and deleted
+//              vertices included. Of the mathematics library only what is exact or rounded
+//              correctly (sqrt, floor): the rest differs between C libraries. None of it is in the
+//              step; around it are pow(3, 1/4) of initial_surface.cpp, exp of gaussian.cpp, and log
+//              of recovery.cpp, which is rounded to an integer.
+//   State      Sleep, wake, due and risk depend on the bits of the mesh's streams, and on what the
+//              passes before have done with them, alone. Buffers that are not written whole start
+//              as zeros (Buffer::resize).
+//
+// Who holds it to that: tests/test_golden_kernels.cpp has a recorded hash for every kernel and
+// names the one that rounds differently; tests/test_determinism.cpp has recorded hashes of runs
+// that take the parallel path, over threads and targets, and compares two runs pass by pass: the
+// first that differs is named, "iteration 17, pass stage 2: velocity" (pass_observer.h,
+// tests/sample_traces.h); tests/test_ct_determinism.sh extracts a head CT; tools/compilers runs
+// the recorded hashes with Clang. A change that changes results on purpose records them anew, and
+// says so.
 #pragma once
 #include <cstdint>
 #include <functional>

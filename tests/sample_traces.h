@@ -46,8 +46,8 @@ inline Trace traced(const Run& run, int threads, plc::SimdTarget target, const F
     if (fault) fault(iteration, pass, mesh);
     trace.steps.push_back({iteration, pass, evolution.hashes()});
   };
-  REQUIRE(plc::pyramidal_recover_shape(pyramid_of(run, schedule), run.recovery, schedule, target,
-                                       hooks, mesh, trace.records)
+  REQUIRE(plc::pyramidal_recover_shape(pyramid_of(run, schedule, target), run.recovery, schedule,
+                                       target, hooks, mesh, trace.records)
               .message() == "");
   trace.hash = plc::state_hash(mesh);
   return trace;
