@@ -133,7 +133,7 @@ void plc_parameters_defaults(plc_parameters* p) {
   p->gradient_bound = 0.1;
   p->mass = 1;
   p->damping = 0.5;
-  p->time_step = 1;
+  p->time_step = 1.5;
   p->max_move = 0.4;
   p->bound = PLC_BOUND_CLAMP;
   p->anisotropy = PLC_ANISOTROPY_VOXEL;

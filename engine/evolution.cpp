@@ -23,7 +23,7 @@ Evolution::Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, cons
       slow_vertices_(options.slow_vertices),
       sleep_(mesh, schedule, options.calm_speed),
       dynamics_(mesh, schedule, simd, model),
-      guard_(mesh, schedule),
+      guard_(mesh, schedule, simd),
       resolution_(mesh, schedule, simd) {}
 
 void Evolution::restart() {
@@ -46,6 +46,7 @@ Status Evolution::iterate(const Guide& guide, Seconds& seconds, OperationCounts&
   const auto& due =
       slow_vertices_ ? resolution_.take_due(sleep_.awake()) : resolution_.take_due(true);
   passed("due, hash, surroundings");
+  guard_.find_folds(sleep_.awake_and_rim());
   guard_.assess(due, resolution_.surroundings().at_risk());
   passed("risk");
   back_.clear();

@@ -31,8 +31,8 @@ struct plc_surface {
   std::vector<std::array<int64_t, 3>> level_dims;  // as records
   std::vector<double> level_units;                 // mm
   std::vector<double> level_isos;                  // image units
-  double seconds_pyramid = 0;  // everything before the evolution
-  double seconds_images = 0;   // of these, build_pyramid
+  double seconds_pyramid = 0;                      // everything before the evolution
+  double seconds_images = 0;                       // of these, build_pyramid
   double seconds_evolution = 0;
 };
 

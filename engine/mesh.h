@@ -33,7 +33,7 @@ struct Streams3 {
 //   calm           1      iterations    sleep.h: for how long v has been calm, up to 255
 //   stir           1      1/256 of      sleep.h: movement along the normal since v last woke its
 //                         kWakeMove     neighbours
-//   risk           1      flag          motion guard: the surface is near or folded here
+//   risk           1      flags         motion guard: the surface is near or folded here (risk.h)
 //   operations     1      count         resolution, in this iteration
 //   cut            4+4    id, iteration annular: which cut made v, and when (exemption from (3))
 //   rings          48+2   id            transformations (kernels/ring.h)
@@ -94,6 +94,8 @@ class Mesh {
   void reserve(uint32_t vertices);
   // Vertices created since the ids were last renumbered: how far ids have strayed from space order.
   uint32_t created() const { return created_; }
+  // No id was created or freed since then.
+  bool in_order() const { return created_ == 0 && alive_ == slots_; }
   // Of deleted vertices; create() takes the last one.
   const std::vector<uint32_t>& free_ids() const { return free_; }
   // New ids: new id = rank of v in `order`, which lists every living vertex once. Nothing but the

@@ -1,10 +1,37 @@
 #include "engine/motion_guard.h"
 
+#include "engine/blocks.h"
+#include "engine/constants.h"
+#include "engine/risk.h"
+#include "kernels/ring_forces.h"
+
 namespace plc {
 
+namespace {
+
+constexpr size_t kTaskBlocks = kGrain / kRingLanes;
+
+}  // namespace
+
+void MotionGuard::find_folds(const std::vector<uint32_t>& blocks) {
+  folds_.resize_uninitialized(mesh_.padded());
+  const Streams3& n = mesh_.normal;
+  run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {
+    const Blocks part{blocks.data() + begin, end - begin};
+    kernels::turned_faces(simd_, mesh_.rings(), mesh_.packed.data(), part, n.x.data(), n.y.data(),
+                          n.z.data(), kRiskDot, folds_.data());
+    for (size_t i = 0; i < part.count; ++i) {
+      for (uint32_t v = part.begin(i); v < part.begin(i) + kRingLanes; ++v) {
+        const uint32_t near = mesh_.risk[v] & kNearRisk;
+        mesh_.risk[v] = static_cast<uint8_t>(near | uint32_t{folds_[v]} * kFoldRisk);
+      }
+    }
+  });
+}
+
 void MotionGuard::assess(const std::vector<uint32_t>& due, const std::vector<uint32_t>& at_risk) {
-  for (const uint32_t v : due) mesh_.risk[v] = 0;
-  for (const uint32_t v : at_risk) mesh_.risk[v] = 1;
+  for (const uint32_t v : due) mesh_.risk[v] &= kFoldRisk;
+  for (const uint32_t v : at_risk) mesh_.risk[v] |= kNearRisk;
 }
 
 int64_t MotionGuard::take_back(const Buffer<Packed>& before, SpatialHash& hash,

@@ -6,6 +6,7 @@
 #include "engine/meeting_search.h"
 #include "engine/mesh.h"
 #include "engine/spatial_hash.h"
+#include "kernels/simd.h"
 #include "pyramid/executor.h"
 
 namespace plc {
@@ -16,8 +17,12 @@ namespace plc {
 // against each other.
 class MotionGuard {
  public:
-  MotionGuard(Mesh& mesh, const Executor& executor) : mesh_(mesh), executor_(executor) {}
+  MotionGuard(Mesh& mesh, const Executor& executor, SimdTarget simd)
+      : mesh_(mesh), executor_(executor), simd_(simd) {}
 
+  // blocks: of kRingLanes vertices, with all that have moved and all their neighbours. Finds where
+  // the surface folds now, against the normals of the movement's start.
+  void find_folds(const std::vector<uint32_t>& blocks);
   // due: the vertices whose risk has been looked at anew; at_risk: those of all that it was found
   // for (Surroundings). The others keep theirs.
   void assess(const std::vector<uint32_t>& due, const std::vector<uint32_t>& at_risk);
@@ -31,6 +36,8 @@ class MotionGuard {
 
   Mesh& mesh_;
   const Executor& executor_;
+  SimdTarget simd_;
+  Buffer<uint8_t> folds_;
   MeetingSearch search_;
 };
 

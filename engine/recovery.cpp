@@ -45,7 +45,7 @@ class Recovery {
       if (Status s = recover_level(h, records.back()); !s.ok()) return s;
       pyramid_.levels[static_cast<size_t>(h)].values = Buffer<float>();  // not needed any more
     }
-    renumber();
+    if (!mesh_.in_order()) renumber();
     return {};
   }
 
@@ -212,10 +212,12 @@ class Recovery {
     if (c.since != 0 && calm < iteration - c.since) {
       c = {0, iteration + kConfirmPause};
     }
-    if (iteration < kMinIterations || calm < kCalmIterations) return false;
-    if (c.since != 0) return iteration - c.since >= kConfirmIterations;
-    if (!evolution_.any_asleep()) return true;
-    if (iteration < c.not_before) return false;
+    if (calm < kCalmIterations) return false;
+    if (c.since != 0) {
+      return iteration >= kMinIterations && iteration - c.since >= kConfirmIterations;
+    }
+    if (!evolution_.any_asleep()) return iteration >= kMinIterations;
+    if (iteration < std::max(c.not_before, kMinIterations - kConfirmIterations)) return false;
     evolution_.wake_all();
     c.since = iteration;
     return false;

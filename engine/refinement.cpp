@@ -122,7 +122,7 @@ std::vector<uint32_t> living_order(const Mesh& mesh) {
 
 void refine(Mesh& mesh, const Executor& executor, bool renumbering) {
   // Old vertices get the low ids, without gaps, so that new and old are told apart by id.
-  mesh.renumber(renumbering ? morton_order(mesh) : living_order(mesh));
+  if (!mesh.in_order()) mesh.renumber(renumbering ? morton_order(mesh) : living_order(mesh));
   const uint32_t old_slots = mesh.slots();
   mesh.reserve(old_slots * 3);
   const FaceVertices faces = create_face_vertices(mesh, old_slots);

@@ -18,19 +18,25 @@ namespace plc {
 
 namespace {
 
-constexpr size_t kChunk = 128;  // queue entries per task
+constexpr size_t kChunk = 128;        // queue entries per task
+constexpr size_t kSerialQueue = 256;  // shorter queues are not worth tasks
 
 // Runs collect(chunk of the queue, out) over chunks and joins the results in order.
 template <typename Collect>
 std::vector<Candidate> collect_in_order(const Executor& executor,
                                         const std::vector<uint32_t>& queue, Collect&& collect) {
+  std::vector<Candidate> all;
+  if (queue.size() <= kSerialQueue) {
+    for (const uint32_t v : queue) collect(v, all);
+    std::sort(all.begin(), all.end());
+    return all;
+  }
   const size_t chunks = (queue.size() + kChunk - 1) / kChunk;
   std::vector<std::vector<Candidate>> found(chunks);
   executor.run(chunks, [&](size_t chunk) {
     const size_t end = std::min((chunk + 1) * kChunk, queue.size());
     for (size_t i = chunk * kChunk; i < end; ++i) collect(queue[i], found[chunk]);
   });
-  std::vector<Candidate> all;
   for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
   std::sort(all.begin(), all.end());
   return all;

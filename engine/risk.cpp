@@ -107,21 +107,6 @@ bool centres_apart(const Star& f, uint32_t k, const Star& g, uint32_t i, float g
 
 }  // namespace
 
-bool folded(const Mesh& mesh, uint32_t v, const Neighbors& ring) {
-  const Vec3 p = mesh.at(v);
-  const Vec3 n = mesh.normal.at(v);
-  Vec3 last = mesh.at(ring[ring.size() - 1]) - p;
-  bool turned = false;
-  for (const uint32_t x : ring) {
-    const Vec3 edge = mesh.at(x) - p;
-    const Vec3 area = cross(last, edge);
-    const float along = dot(area, n);
-    turned |= (along <= 0) | (along * along <= kRiskDot * kRiskDot * dot(area, area));
-    last = edge;
-  }
-  return turned;
-}
-
 bool may_meet(const Mesh& mesh, uint32_t v, const Neighbors& ring, uint32_t w) {
   const float gap = kRiskGap * static_cast<float>(mesh.delta);
   const Neighbors other = mesh.ring(w);

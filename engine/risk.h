@@ -5,19 +5,20 @@
 // the piercing point, as a corner of the pierced face is at most 1/sqrt 3 of its longest edge.
 // Parts whose normals agree by more than kRiskDot are one sheet, or the outer two of three sheets,
 // and then the middle one is at risk with both. So a vertex v is at risk when
-//   - the surface is folded around it, or
+//   - a face around it is turned by more than kRiskDot against its normal: looked at after every
+//     movement, around all that may have moved (a thin face turns over when it hardly moves), or
 //   - for a vertex w within kRiskReach that is no neighbour and has a normal turned by more than
 //     that, a face of v and one of w that have no common vertex are not kRiskGap apart; w is then
-//     at risk, too.
-// Like the constraints, the risk of a vertex is looked at when it is due: of two vertices the later
-// look counts, and since then neither has moved by more than kCheckPath.
+//     at risk, too. Like the constraints, this is looked at when a vertex is due: of two vertices
+//     the later look counts, and since then neither has moved by more than kCheckPath.
 #pragma once
 #include "engine/mesh.h"
 
 namespace plc {
 
-// The normal of a face of v is turned by more than kRiskDot against that of v.
-bool folded(const Mesh& mesh, uint32_t v, const Neighbors& ring);
+// Bits of Mesh::risk.
+inline constexpr uint8_t kNearRisk = 1;
+inline constexpr uint8_t kFoldRisk = 2;
 
 // False when planes that have kRiskGap room lie between the faces of v and those of w, but for
 // pairs of faces with a common vertex. v and w are not neighbours; ring is that of v.

@@ -2,20 +2,15 @@
 
 #include <algorithm>
 
-#include "engine/self_intersection.h"
+#include "engine/meeting_search.h"
 
 namespace plc {
 
 std::vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Executor& executor) {
-  const std::vector<uint32_t> abc = mesh.faces();
-  std::vector<double> xyz(static_cast<size_t>(mesh.slots()) * 3);
-  for (uint32_t v = 0; v < mesh.slots(); ++v) {
-    const Packed& p = mesh.packed[v];
-    const size_t at = static_cast<size_t>(v) * 3;
-    xyz[at] = p.x, xyz[at + 1] = p.y, xyz[at + 2] = p.z;
-  }
+  MeetingSearch search;
   std::vector<uint32_t> faces;
-  for (const auto& [f, g] : self_intersections(xyz.data(), abc.data(), abc.size() / 3, executor)) {
+  for (const auto& [f, g] :
+       search.find(mesh.rings(), mesh.slots(), mesh.packed.data(), nullptr, executor)) {
     faces.push_back(f);
     faces.push_back(g);
   }
@@ -23,8 +18,8 @@ std::vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Execu
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   std::vector<std::array<uint32_t, 3>> corners;
   for (const uint32_t f : faces) {
-    const size_t at = static_cast<size_t>(f) * 3;
-    corners.push_back({abc[at], abc[at + 1], abc[at + 2]});
+    const uint32_t* abc = search.face(f);
+    corners.push_back({abc[0], abc[1], abc[2]});
   }
   return corners;
 }

@@ -37,6 +37,33 @@ void Sleep::choose(bool all) {
     }
     asleep_[block] = asleep ? 1 : 0;
   }
+  find_rim();
+}
+
+void Sleep::find_rim() {
+  awake_and_rim_ = awake_;
+  if (!any_asleep()) return;
+  const size_t tasks = block_count(awake_.size(), kTaskBlocks);
+  found_.resize(std::max(found_.size(), tasks));
+  run_blocks(executor_, awake_.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {
+    auto& rim = found_[task];
+    rim.clear();
+    for (size_t i = begin; i < end; ++i) {
+      for (uint32_t v = awake_[i] * kRingLanes; v < (awake_[i] + 1) * kRingLanes; ++v) {
+        const uint32_t d = mesh_.rings().valence[v];
+        for (uint32_t k = 0; k < d; ++k) {
+          const uint32_t block = mesh_.neighbor(v, k) / kRingLanes;
+          if (asleep_[block] != 0 && (rim.empty() || rim.back() != block)) rim.push_back(block);
+        }
+      }
+    }
+  });
+  for (size_t task = 0; task < tasks; ++task) {
+    awake_and_rim_.insert(awake_and_rim_.end(), found_[task].begin(), found_[task].end());
+  }
+  std::sort(awake_and_rim_.begin(), awake_and_rim_.end());
+  awake_and_rim_.erase(std::unique(awake_and_rim_.begin(), awake_and_rim_.end()),
+                       awake_and_rim_.end());
 }
 
 void Sleep::observe() {
@@ -44,9 +71,9 @@ void Sleep::observe() {
   const float along = calm_speed_ * static_cast<float>(mesh_.delta);
   const float slide = kCalmSlide * along;
   const float steps = 256 / (kWakeMove * static_cast<float>(mesh_.delta));
-  wakers_.resize(std::max(wakers_.size(), block_count(awake_.size(), kTaskBlocks)));
+  found_.resize(std::max(found_.size(), block_count(awake_.size(), kTaskBlocks)));
   run_blocks(executor_, awake_.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {
-    auto& wakers = wakers_[task];
+    auto& wakers = found_[task];
     wakers.clear();
     for (size_t i = begin; i < end; ++i) {
       const uint32_t first = awake_[i] * kRingLanes;
@@ -64,7 +91,7 @@ void Sleep::observe() {
     }
   });
   for (size_t task = 0; task < block_count(awake_.size(), kTaskBlocks); ++task) {
-    for (const uint32_t v : wakers_[task]) {
+    for (const uint32_t v : found_[task]) {
       const uint32_t d = mesh_.valence(v);
       for (uint32_t k = 0; k < d; ++k) mesh_.calm[mesh_.neighbor(v, k)] = 0;
     }

@@ -29,6 +29,8 @@ class Sleep {
   // in the second list.
   const std::vector<uint32_t>& awake() const { return awake_; }
   const std::vector<uint32_t>& fallen() const { return fallen_; }
+  // The awake ones and those that sleep but have a neighbour of an awake vertex.
+  const std::vector<uint32_t>& awake_and_rim() const { return awake_and_rim_; }
   bool any_asleep() const { return awake_.size() * kRingLanes < mesh_.padded(); }
   // After the step: who was calm, and who wakes its neighbours. Normals and displacements are those
   // of the step.
@@ -38,12 +40,14 @@ class Sleep {
   void restart() { asleep_.clear(); }
 
  private:
+  void find_rim();
+
   Mesh& mesh_;
   const Executor& executor_;
   float calm_speed_;
-  std::vector<uint32_t> awake_, fallen_;
-  std::vector<uint8_t> asleep_;                // by block
-  std::vector<std::vector<uint32_t>> wakers_;  // per task: vertices that wake their neighbours
+  std::vector<uint32_t> awake_, fallen_, awake_and_rim_;
+  std::vector<uint8_t> asleep_;               // by block
+  std::vector<std::vector<uint32_t>> found_;  // per task
 };
 
 }  // namespace plc

@@ -1,6 +1,8 @@
 #include "engine/surroundings.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "engine/blocks.h"
 #include "engine/constants.h"
@@ -12,10 +14,9 @@ namespace plc {
 namespace {
 
 constexpr size_t kTaskVertices = 256;
-// A group ends where its box would grow beyond this, in delta: what is around it is fetched once
-// but searched by each of its vertices.
-constexpr float kGroupExtent = 6;
-constexpr size_t kGroupVertices = 32;
+// A group is what follows one another in one cube of this size, in delta: vertices are numbered
+// along a curve that fills such cubes one by one.
+constexpr float kGroupCube = 4;
 
 }  // namespace
 
@@ -52,18 +53,22 @@ void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& h
   too_near_.erase(std::unique(too_near_.begin(), too_near_.end()), too_near_.end());
 }
 
-// How many of the vertices make a group, and its box.
+// How many of the vertices make a group, those in the same cube, and its box.
 size_t Surroundings::group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high) const {
-  const float extent = kGroupExtent * static_cast<float>(mesh_.delta);
+  const float inverse = 1 / (kGroupCube * static_cast<float>(mesh_.delta));
+  const auto cube_of = [&](Vec3 p) {
+    return std::array<int32_t, 3>{static_cast<int32_t>(std::floor(p.x * inverse)),
+                                  static_cast<int32_t>(std::floor(p.y * inverse)),
+                                  static_cast<int32_t>(std::floor(p.z * inverse))};
+  };
   low = high = mesh_.at(due[0]);
+  const auto cube = cube_of(low);
   size_t size = 1;
-  for (; size < std::min(count, kGroupVertices); ++size) {
+  for (; size < count; ++size) {
     const Vec3 p = mesh_.at(due[size]);
-    const Vec3 l{std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    const Vec3 h{std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    if (h.x - l.x > extent || h.y - l.y > extent || h.z - l.z > extent) break;
-    low = l;
-    high = h;
+    if (cube_of(p) != cube) break;
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
   return size;
 }
@@ -97,7 +102,7 @@ void Surroundings::judge(uint32_t v, uint32_t hits, Task& task) const {
   const Vec3 p = mesh_.at(v), n = mesh_.normal.at(v);
   const float near = kMinApart * static_cast<float>(mesh_.delta);
   const Neighbors ring = mesh_.ring(v);
-  bool risk = folded(mesh_, v, ring);
+  bool risk = false;
   for (uint32_t k = 0; k < hits; ++k) {
     const uint32_t i = task.hits[k];
     const uint32_t w = task.around.ids[i];

@@ -23,6 +23,7 @@ using scalar::metric_normals;
 using scalar::normals;
 using scalar::normals_and_laplacian;
 using scalar::spring_force;
+using scalar::turned_faces;
 #else
 
 // visit(v) for vertices v .. v + kLanes - 1 of the blocks.
@@ -222,6 +223,54 @@ void edge_violations(const RingView& ring, const Packed* position, float min_squ
   }
 }
 
+struct TurnedFaces {
+  Floats3 centre, normal;
+  Floats most_squared;
+  Floats3 first = zero3(), last = zero3();
+  FloatMask turned = hn::MaskFromVec(hn::Zero(FloatTag()));
+  bool started = false;
+  HWY_INLINE void add(FloatMask has_slot, const Floats3& neighbour) {
+    const Floats3 edge = neighbour - centre;
+    if (!started) {
+      first = last = edge;
+      started = true;
+      return;
+    }
+    test(has_slot, edge);
+    last.x = hn::IfThenElse(has_slot, edge.x, last.x);
+    last.y = hn::IfThenElse(has_slot, edge.y, last.y);
+    last.z = hn::IfThenElse(has_slot, edge.z, last.z);
+  }
+  HWY_INLINE void test(FloatMask has_face, const Floats3& edge) {
+    const FloatTag d;
+    const Floats3 area = cross(last, edge);
+    const Floats along = dot(area, normal);
+    const FloatMask away = hn::Le(along, hn::Zero(d));
+    const FloatMask far = hn::Le(hn::Mul(along, along), hn::Mul(most_squared, dot(area, area)));
+    turned = hn::Or(turned, hn::And(has_face, hn::Or(away, far)));
+  }
+};
+
+void turned_faces(const RingView& ring, const Packed* position, const Blocks& blocks,
+                  const float* nx, const float* ny, const float* nz, float most, uint8_t* flags) {
+  const FloatTag d;
+  const hn::RebindToSigned<FloatTag> d32;
+  const hn::Rebind<uint8_t, FloatTag> d8;
+  for_lanes(ring, position, blocks, [&](uint32_t v) HWY_ATTR {
+    const Floats valence = load_valence(ring, v);
+    TurnedFaces walk{load_packed(position + v), load3(nx, ny, nz, v), hn::Set(d, most * most)};
+    walk_ring(ring, position, v, valence, walk);
+    walk.test(hn::Gt(valence, hn::Zero(d)), walk.first);
+    const auto bits = hn::IfThenElseZero(hn::RebindMask(d32, walk.turned), hn::Set(d32, 1));
+    hn::StoreU(hn::DemoteTo(d8, bits), d8, flags + v);
+    if (HWY_LIKELY(!has_tails(valence))) return;
+    for (uint32_t u = v; u < v + kLanes; ++u) {
+      if (ring.valence[u] <= kRingSlots) continue;
+      flags[u] = scalar::turned_flag(ring, position, {nx[u], ny[u], nz[u]}, most, u);
+    }
+  });
+}
+
 struct LengthSum {
   Floats3 centre;
   Floats3 metric;
@@ -267,6 +316,7 @@ HWY_EXPORT(normals);
 HWY_EXPORT(normals_and_laplacian);
 HWY_EXPORT(metric_normals);
 HWY_EXPORT(edge_violations);
+HWY_EXPORT(turned_faces);
 HWY_EXPORT(edge_length_sum);
 
 void laplacian(SimdTarget simd, const RingView& ring, const Packed* position, const Blocks& blocks,
@@ -309,6 +359,12 @@ void edge_violations(SimdTarget simd, const RingView& ring, const Packed* positi
                      uint8_t* flags) {
   PLC_DISPATCH(simd, edge_violations)
   (ring, position, min_squared, max_squared, begin, end, flags);
+}
+
+void turned_faces(SimdTarget simd, const RingView& ring, const Packed* position,
+                  const Blocks& blocks, const float* nx, const float* ny, const float* nz,
+                  float most, uint8_t* flags) {
+  PLC_DISPATCH(simd, turned_faces)(ring, position, blocks, nx, ny, nz, most, flags);
 }
 
 double edge_length_sum(SimdTarget simd, const RingView& ring, const Packed* position,

@@ -51,6 +51,12 @@ void edge_violations(SimdTarget simd, const RingView& ring, const Packed* positi
                      float min_squared, float max_squared, uint32_t begin, uint32_t end,
                      uint8_t* flags);
 
+// flags[v]: 1 when a face around v is turned against the unit normal n of v: with its area vector
+// a (the cross product of successive ring edges) a . n <= 0 or (a . n)^2 <= most^2 |a|^2; else 0.
+void turned_faces(SimdTarget simd, const RingView& ring, const Packed* position,
+                  const Blocks& blocks, const float* nx, const float* ny, const float* nz,
+                  float most, uint8_t* flags);
+
 // Sum of the lengths in the metric of all edges seen from each vertex of the range (each edge of a
 // mesh counts twice over the mesh): each ring in float, the vertices in double in the order of
 // lane_sum.h.

@@ -38,6 +38,8 @@ Triple record_sum(const RingView& ring, const Packed* record, uint32_t v);
 Triple spring_sum(const RingView& ring, const Packed* position, float rest_length,
                   const Metric& metric, uint32_t v);
 Triple normal_sum(const RingView& ring, const Packed* position, uint32_t v);  // cross products
+uint8_t turned_flag(const RingView& ring, const Packed* position, const Triple& normal, float most,
+                    uint32_t v);
 uint8_t violation_flags(const RingView& ring, const Packed* position, float min_squared,
                         float max_squared, uint32_t v);
 float length_sum(const RingView& ring, const Packed* position, const Metric& metric, uint32_t v);
@@ -57,6 +59,8 @@ void normals(const RingView& ring, const Packed* position, const Blocks& blocks,
 void metric_normals(const Metric& metric, const float* nx, const float* ny, const float* nz,
                     uint32_t begin, uint32_t end, float* mx, float* my, float* mz, float* step_x,
                     float* step_y, float* step_z);
+void turned_faces(const RingView& ring, const Packed* position, const Blocks& blocks,
+                  const float* nx, const float* ny, const float* nz, float most, uint8_t* flags);
 void edge_violations(const RingView& ring, const Packed* position, float min_squared,
                      float max_squared, uint32_t begin, uint32_t end, uint8_t* flags);
 double edge_length_sum(const RingView& ring, const Packed* position, const Metric& metric,

@@ -79,6 +79,25 @@ Triple normal_sum(const RingView& ring, const Packed* position, uint32_t v) {
   return sum;
 }
 
+uint8_t turned_flag(const RingView& ring, const Packed* position, const Triple& normal, float most,
+                    uint32_t v) {
+  const uint32_t valence = ring.valence[v];
+  if (valence == 0) return 0;
+  const auto turned = [&](const Triple& last, const Triple& edge) {
+    const Triple area = cross(last, edge);
+    const float along = area.x * normal.x + area.y * normal.y + area.z * normal.z;
+    return along <= 0.0F || along * along <= most * most * squared(area);
+  };
+  const Triple first = difference(position[ring.slot(v, 0)], position[v]);
+  Triple last = first;
+  for (uint32_t k = 1; k < valence; ++k) {
+    const Triple edge = difference(position[ring.slot(v, k)], position[v]);
+    if (turned(last, edge)) return 1;
+    last = edge;
+  }
+  return turned(last, first) ? 1 : 0;
+}
+
 uint8_t violation_flags(const RingView& ring, const Packed* position, float min_squared,
                         float max_squared, uint32_t v) {
   uint8_t flags = 0;
@@ -163,6 +182,13 @@ void metric_normals(const Metric& metric, const float* nx, const float* ny, cons
     step_y[v] = my[v] * inverse.y;
     step_z[v] = mz[v] * inverse.z;
   }
+}
+
+void turned_faces(const RingView& ring, const Packed* position, const Blocks& blocks,
+                  const float* nx, const float* ny, const float* nz, float most, uint8_t* flags) {
+  for_vertices(blocks, [&](uint32_t v) {
+    flags[v] = turned_flag(ring, position, {nx[v], ny[v], nz[v]}, most, v);
+  });
 }
 
 void edge_violations(const RingView& ring, const Packed* position, float min_squared,

@@ -30,7 +30,7 @@ class Movement {
     mesh_.velocity.set(v, by);
   }
   int64_t guard(const plc::Executor& executor = samples::kSerial) {
-    plc::MotionGuard guard(mesh_, executor);
+    plc::MotionGuard guard(mesh_, executor, plc::best_simd_target());
     hash_.build(mesh_, plc::kMinApart * static_cast<float>(mesh_.delta), executor);
     std::vector<uint32_t> due;
     for (uint32_t v = 0; v < mesh_.slots(); ++v) {
@@ -38,6 +38,9 @@ class Movement {
     }
     plc::Surroundings around(mesh_, executor, plc::best_simd_target());
     around.search(due, hash_);
+    std::vector<uint32_t> blocks(mesh_.padded() / plc::kRingLanes);
+    std::iota(blocks.begin(), blocks.end(), 0U);
+    guard.find_folds(blocks);
     guard.assess(due, around.at_risk());
     std::vector<uint32_t> back;
     const int64_t count = guard.take_back(before_, hash_, back);
@@ -182,7 +185,7 @@ TEST_CASE("only the risk of vertices that are due is looked at again", "[motion_
     mesh.normal.set(v, plc::vertex_normal(mesh, v));
     mesh.risk[v] = 1;
   }
-  plc::MotionGuard guard(mesh, samples::kSerial);
+  plc::MotionGuard guard(mesh, samples::kSerial, plc::best_simd_target());
   plc::SpatialHash hash;
   hash.build(mesh, plc::kMinApart * static_cast<float>(kDelta), samples::kSerial);
   plc::Surroundings around(mesh, samples::kSerial, plc::best_simd_target());

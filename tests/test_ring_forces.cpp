@@ -297,6 +297,42 @@ TEST_CASE("edge violations are found in columns and tails alike", "[kernels]") {
   REQUIRE(tails_alone > 0);
 }
 
+TEST_CASE("a face that is turned against the normal is found, in columns and tails alike",
+          "[kernels]") {
+  // Random rings turn every which way: with `most` below the least of them none is turned but those
+  // at right angles or more.
+  const RandomRings rings = mixed_rings(10, 8);
+  const auto normals = fixtures::random_floats(3 * rings.count(), -1, 1, 3);
+  const float* n = normals.data();
+  const uint32_t count = rings.count();
+  const plc::Blocks all = plc::Blocks::range(0, count);
+  int turned = 0, plain = 0;
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    for (const float most : {0.0F, 0.3F}) {
+      std::vector<uint8_t> flags(count, 9);
+      kernels::turned_faces(simd, rings.view(), rings.position.data(), all, n, n + count,
+                            n + 2 * count, most, flags.data());
+      for (uint32_t v = 0; v < count; ++v) {
+        const auto& ring = rings.rings[v];
+        int expected = 0;
+        for (size_t k = 0; k < ring.size(); ++k) {
+          const auto a = at(rings, ring[k]) - at(rings, v);
+          const auto b = at(rings, ring[(k + 1) % ring.size()]) - at(rings, v);
+          const auto area = cross(a, b);
+          const double along = area[0] * double{n[v]} + area[1] * double{n[count + v]} +
+                               area[2] * double{n[2 * count + v]};
+          if (along <= 0 || along <= static_cast<double>(most) * length(area)) expected = 1;
+        }
+        CAPTURE(plc::simd_target_name(simd), v, most);
+        REQUIRE(static_cast<int>(flags[v]) == expected);
+        (expected == 1 ? turned : plain) += 1;
+      }
+    }
+  }
+  CHECK(turned > 0);
+  CHECK(plain > 0);
+}
+
 TEST_CASE("edge lengths add up to the same bits for every target", "[kernels]") {
   const RandomRings rings = mixed_rings(10, 8);
   for (const auto& [begin, end] : kRanges) {

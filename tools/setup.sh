@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian packages that the named purposes need:
-#   tools/setup.sh [build] [test] [demo] [lint] [compilers] [perf]
+#   tools/setup.sh [build] [test] [demo] [lint] [compilers] [perf] [peers]
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
 
 build=(g++ cmake make libhwy-dev libtbb-dev libmimalloc-dev libinsighttoolkit5-dev libarchive-dev
   libexpat1-dev zlib1g-dev libembree-dev libpng-dev libcli11-dev nlohmann-json3-dev)
-test=(catch2 invesalius-examples)
+test=(catch2 invesalius-examples jq)
 demo=(invesalius-examples)
 lint=(clang-format clang-tidy)
 compilers=(clang)
-perf=(jq gnuplot-nox invesalius-examples)
+perf=(jq gnuplot-nox invesalius-examples libbenchmark-dev)
+peers=(libvtk9-dev libcgal-dev)  # programs that perf/run compares with
 
 wanted=()
 for purpose in "$@"; do
@@ -21,7 +22,8 @@ for purpose in "$@"; do
     lint) wanted+=("${lint[@]}") ;;
     compilers) wanted+=("${compilers[@]}") ;;
     perf) wanted+=("${perf[@]}") ;;
-    *) echo "setup.sh: unknown purpose $purpose: build, test, demo, lint, compilers or perf" >&2; exit 2 ;;
+    peers) wanted+=("${peers[@]}") ;;
+    *) echo "setup.sh: unknown purpose $purpose: build, test, demo, lint, compilers, perf or peers" >&2; exit 2 ;;
   esac
 done
 
