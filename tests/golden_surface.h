@@ -91,6 +91,18 @@ inline uint64_t edge_violations(SimdTarget simd) {
   return hash.value();
 }
 
+inline uint64_t turned_faces(SimdTarget simd) {
+  const Rings r;
+  Three normal(r.n);
+  const auto [x, y, z] = normal.out();
+  kernels::normals(SimdTarget::kScalar, r.view, r.position, r.all, x, y, z);
+  std::vector<uint8_t> flags(r.n);
+  kernels::turned_faces(simd, r.view, r.position, r.all, x, y, z, 0.1F, flags.data());
+  Fnv hash;
+  hash.add_all(flags);
+  return hash.value();
+}
+
 inline uint64_t edge_length_sum_in(SimdTarget simd, const plc::Metric& metric) {
   const Rings r;
   Fnv hash;

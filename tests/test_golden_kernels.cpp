@@ -45,6 +45,7 @@ const Golden kGolden[] = {
     {"normals_and_laplacian", normals_and_laplacian, 0xa0cd5bc9db53e3e5U},
     {"metric_normals", metric_normals, 0x42b6f4ddef06515dU},
     {"edge_violations", edge_violations, 0xd46f47d7796a0712U},
+    {"turned_faces", turned_faces, 0xeb2f7ceac1410805U},
     {"edge_length_sum", edge_length_sum, 0x443ae003bf3090ceU},
     {"edge_length_sum, stretched", edge_length_sum_stretched, 0x69ff4502764abe00U},
     {"rk4_stage 0", rk4_stage<0>, 0x31b3fe8a78eea7a1U},
