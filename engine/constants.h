@@ -29,8 +29,8 @@ inline constexpr int kCheckPeriod = 50;
 // ---- sleep (sleep.h) ------------------------------------------------------------------------
 
 // The calm speed, as a part of the speed that every vertex would have at the energy epsilon,
-// sqrt(2 epsilon) delta per iteration. Twice as much halves what is awake of a head CT near its end
-// and loses 0.3 % of its area.
+// sqrt(2 epsilon) delta per time. More leaves less awake but loses area: coarse to fine the main
+// part of a head CT was 0.93 % smaller than that of a direct run, and 1.04 % at 0.65.
 inline constexpr double kCalmSpeed = 0.5;
 inline constexpr float kCalmSlide = 10;
 inline constexpr uint8_t kCalmPeriod = 8;

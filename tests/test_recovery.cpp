@@ -1,5 +1,6 @@
 #include "engine/recovery.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -109,6 +110,35 @@ TEST_CASE("the result has ids without gaps in Morton order", "[recovery]") {
   CHECK(r.mesh.slots() == r.mesh.vertex_count());
   const auto order = plc::morton_order(r.mesh);
   for (uint32_t v = 0; v < r.mesh.slots(); ++v) CHECK(order[v] == v);
+}
+
+TEST_CASE("without renumbering ids stay in the order in which they came, without gaps",
+          "[recovery]") {
+  Run run = ball_run(1);
+  const Recovered usual = recover(run);
+  run.recovery.renumbering = false;
+  const Recovered r = recover(run);
+  REQUIRE(r.status.ok());
+  check_valid(r.mesh);
+  CHECK(r.mesh.slots() == r.mesh.vertex_count());
+  const auto order = plc::morton_order(r.mesh);
+  CHECK_FALSE(std::is_sorted(order.begin(), order.end()));
+  CHECK(samples::volume(r.mesh) == Approx(samples::volume(usual.mesh)).epsilon(0.01));
+}
+
+TEST_CASE("without the rule of slow vertices every vertex is checked in every iteration",
+          "[recovery]") {
+  Run run = ball_run(0);
+  run.recovery.slow_vertices = false;
+  const Recovered r = recover(run);
+  REQUIRE(r.status.ok());
+  check_valid(r.mesh);
+  for (uint32_t v = 0; v < r.mesh.slots(); ++v) {
+    CHECK(r.mesh.path[v] == 0);
+    CHECK(r.mesh.idle[v] == 0);
+  }
+  CHECK(samples::volume(r.mesh) ==
+        Approx(samples::volume(recover(ball_run(0)).mesh)).epsilon(0.01));
 }
 
 TEST_CASE("progress counts iterations from 1 on each level and never goes back", "[recovery]") {
