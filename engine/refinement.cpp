@@ -80,8 +80,7 @@ FaceVertices create_face_vertices(Mesh& mesh, uint32_t old_slots) {
 // did not. Each round gives back the edges of all faces that meet; with all given back none is
 // left.
 // of_face: by id, whether a vertex was created in a face.
-void undo_where_meeting(Mesh& mesh, const std::vector<uint8_t>& of_face,
-                        const Executor& executor) {
+void undo_where_meeting(Mesh& mesh, const std::vector<uint8_t>& of_face, const Executor& executor) {
   for (;;) {
     const auto meeting = meeting_faces(mesh, executor);
     bool undone = false;

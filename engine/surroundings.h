@@ -13,8 +13,12 @@ namespace plc {
 
 struct VertexPair {
   uint32_t u, w;
-  friend bool operator==(const VertexPair& a, const VertexPair& b) = default;
-  friend auto operator<=>(const VertexPair& a, const VertexPair& b) = default;
+  friend bool operator==(const VertexPair& a, const VertexPair& b) {
+    return a.u == b.u && a.w == b.w;
+  }
+  friend bool operator<(const VertexPair& a, const VertexPair& b) {
+    return a.u != b.u ? a.u < b.u : a.w < b.w;
+  }
 };
 
 // Due vertices that are neighbours in memory lie near each other: what is around a group of them is

@@ -46,7 +46,7 @@ HWY_INLINE void prefetch_voxels(const SurfaceForces& f, uint32_t begin) {
     const Cells x = locate(p.x, image.scale[0], image.offset[0], image.dims[0]);
     const Cells y = locate(p.y, image.scale[1], image.offset[1], image.dims[1]);
     const Cells z = locate(p.z, image.scale[2], image.offset[2], image.dims[2]);
-    const Stored at = stored<!std::is_same_v<Voxel, UnitVoxel>>(image, x, y, z);
+    const Stored at = stored<!std::is_same_v<Voxel, UnitVoxel> >(image, x, y, z);
     if (!at.all) continue;
     for (uint32_t l = 0; l < kLanes; ++l) {
       const auto* voxel = voxels + at.first[l];
