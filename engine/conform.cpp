@@ -116,7 +116,7 @@ void put_at_rest(Mesh& mesh) {
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     mesh.wake(v);
     mesh.velocity.set(v, {});
-    mesh.risk[v] = 1;
+    mesh.risk[v] = Mesh::kNearRisk;
     mesh.path[v] = 0;
     mesh.operations[v] = 0;
     mesh.cut_id[v] = 0;

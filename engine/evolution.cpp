@@ -76,7 +76,7 @@ bool Evolution::embedded() {
   const auto meeting = meeting_faces(mesh_, schedule_);
   for (const auto& face : meeting) {
     for (const uint32_t v : face) {
-      mesh_.risk[v] = 1;
+      mesh_.risk[v] = Mesh::kNearRisk;
       mesh_.wake(v);
     }
   }

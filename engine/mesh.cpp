@@ -75,7 +75,7 @@ uint32_t Mesh::create(Vec3 p, Vec3 speed) {
   displacement.set(v, {});
   path[v] = 0;
   stir[v] = 0;
-  risk[v] = 1;
+  risk[v] = kNearRisk;
   operations[v] = 0;
   cut_id[v] = 0;
   cut_iteration[v] = 0;

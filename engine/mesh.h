@@ -89,6 +89,9 @@ class Mesh {
     calm[v] = 0;
   }
   static constexpr uint8_t kAwake = 255;
+  // Bits of risk (risk.h): other parts of the surface are near v; the surface is folded around v.
+  static constexpr uint8_t kNearRisk = 1;
+  static constexpr uint8_t kFoldRisk = 2;
 
   void clear();
   void reserve(uint32_t vertices);

@@ -2,7 +2,6 @@
 
 #include "engine/blocks.h"
 #include "engine/constants.h"
-#include "engine/risk.h"
 #include "kernels/ring_forces.h"
 
 namespace plc {
@@ -22,16 +21,16 @@ void MotionGuard::find_folds(const std::vector<uint32_t>& blocks) {
                           n.z.data(), kRiskDot, folds_.data());
     for (size_t i = 0; i < part.count; ++i) {
       for (uint32_t v = part.begin(i); v < part.begin(i) + kRingLanes; ++v) {
-        const uint32_t near = mesh_.risk[v] & kNearRisk;
-        mesh_.risk[v] = static_cast<uint8_t>(near | uint32_t{folds_[v]} * kFoldRisk);
+        const uint32_t near = mesh_.risk[v] & Mesh::kNearRisk;
+        mesh_.risk[v] = static_cast<uint8_t>(near | uint32_t{folds_[v]} * Mesh::kFoldRisk);
       }
     }
   });
 }
 
 void MotionGuard::assess(const std::vector<uint32_t>& due, const std::vector<uint32_t>& at_risk) {
-  for (const uint32_t v : due) mesh_.risk[v] &= kFoldRisk;
-  for (const uint32_t v : at_risk) mesh_.risk[v] |= kNearRisk;
+  for (const uint32_t v : due) mesh_.risk[v] &= Mesh::kFoldRisk;
+  for (const uint32_t v : at_risk) mesh_.risk[v] |= Mesh::kNearRisk;
 }
 
 int64_t MotionGuard::take_back(const Buffer<Packed>& before, SpatialHash& hash,

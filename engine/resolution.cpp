@@ -77,9 +77,7 @@ void Resolution::run(uint32_t iteration, OperationCounts& counts) {
 
 const std::vector<uint32_t>& Resolution::take_due(bool check_all) {
   due_.clear();
-  for (uint32_t v = 0; v < mesh_.slots(); ++v) {
-    if (mesh_.alive(v) && (check_all || is_due(v))) due_.push_back(v);
-  }
+  list_due(0, mesh_.slots(), check_all);
   search_around_due(check_all);
   return due_;
 }
@@ -87,13 +85,16 @@ const std::vector<uint32_t>& Resolution::take_due(bool check_all) {
 const std::vector<uint32_t>& Resolution::take_due(const std::vector<uint32_t>& awake) {
   due_.clear();
   for (const uint32_t block : awake) {
-    const uint32_t end = std::min((block + 1) * kRingLanes, mesh_.slots());
-    for (uint32_t v = block * kRingLanes; v < end; ++v) {
-      if (is_due(v) && mesh_.alive(v)) due_.push_back(v);
-    }
+    list_due(block * kRingLanes, std::min((block + 1) * kRingLanes, mesh_.slots()), false);
   }
   search_around_due(false);
   return due_;
+}
+
+void Resolution::list_due(uint32_t begin, uint32_t end, bool all) {
+  for (uint32_t v = begin; v < end; ++v) {
+    if ((all || is_due(v)) && mesh_.alive(v)) due_.push_back(v);
+  }
 }
 
 // By the slow-vertex rule; counts its period. What sleeps, or might, has none.

@@ -38,6 +38,7 @@ class Resolution {
   void run(uint32_t iteration, OperationCounts& counts);
 
  private:
+  void list_due(uint32_t begin, uint32_t end, bool all);
   bool is_due(uint32_t v);
   void search_around_due(bool all);
   void update_hash(bool all);

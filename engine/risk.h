@@ -16,10 +16,6 @@
 
 namespace plc {
 
-// Bits of Mesh::risk.
-inline constexpr uint8_t kNearRisk = 1;
-inline constexpr uint8_t kFoldRisk = 2;
-
 // False when planes that have kRiskGap room lie between the faces of v and those of w, but for
 // pairs of faces with a common vertex. v and w are not neighbours; ring is that of v.
 bool may_meet(const Mesh& mesh, uint32_t v, const Neighbors& ring, uint32_t w);

@@ -37,6 +37,7 @@ void Sleep::choose(bool all) {
     }
     asleep_[block] = asleep ? 1 : 0;
   }
+  any_asleep_ = awake_.size() < blocks;
   find_rim();
 }
 

@@ -31,7 +31,8 @@ class Sleep {
   const std::vector<uint32_t>& fallen() const { return fallen_; }
   // The awake ones and those that sleep but have a neighbour of an awake vertex.
   const std::vector<uint32_t>& awake_and_rim() const { return awake_and_rim_; }
-  bool any_asleep() const { return awake_.size() * kRingLanes < mesh_.padded(); }
+  // Whether some blocks were left out by the last choose().
+  bool any_asleep() const { return any_asleep_; }
   // After the step: who was calm, and who wakes its neighbours. Normals and displacements are those
   // of the step.
   void observe();
@@ -45,6 +46,7 @@ class Sleep {
   Mesh& mesh_;
   const Executor& executor_;
   float calm_speed_;
+  bool any_asleep_ = false;
   std::vector<uint32_t> awake_, fallen_, awake_and_rim_;
   std::vector<uint8_t> asleep_;               // by block
   std::vector<std::vector<uint32_t>> found_;  // per task

@@ -20,24 +20,18 @@ constexpr float kGroupCube = 4;
 
 }  // namespace
 
-// What one task has found, and its scratch memory.
-struct Surroundings::Task {
-  std::vector<VertexPair> too_near;
-  std::vector<uint32_t> at_risk;
-  SpatialHash::Collected around;  // the group
-  std::vector<float> streams[6];  // their places and normals
-  std::vector<uint32_t> hits;
-};
-
 void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& hash) {
-  std::vector<Task> tasks(block_count(due.size(), kTaskVertices));
+  const size_t tasks = block_count(due.size(), kTaskVertices);
+  tasks_.resize(std::max(tasks_.size(), tasks));
   run_blocks(executor_, due.size(), kTaskVertices, [&](size_t index, size_t begin, size_t end) {
+    Task& task = tasks_[index];
+    task.too_near.clear();
+    task.at_risk.clear();
     for (size_t i = begin; i < end;) {
       Vec3 low, high;
       const size_t count = group_size(due.data() + i, end - i, low, high);
       const float reach = kRiskReach * static_cast<float>(mesh_.delta);
       const Vec3 span{reach, reach, reach};
-      Task& task = tasks[index];
       hash.collect(mesh_, low - span, high + span, task.around);
       search_group(due.data() + i, count, task);
       i += count;
@@ -45,7 +39,8 @@ void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& h
   });
   too_near_.clear();
   at_risk_.clear();
-  for (const Task& task : tasks) {
+  for (size_t index = 0; index < tasks; ++index) {
+    const Task& task = tasks_[index];
     too_near_.insert(too_near_.end(), task.too_near.begin(), task.too_near.end());
     at_risk_.insert(at_risk_.end(), task.at_risk.begin(), task.at_risk.end());
   }
@@ -76,8 +71,8 @@ size_t Surroundings::group_size(const uint32_t* due, size_t count, Vec3& low, Ve
 void Surroundings::search_group(const uint32_t* due, size_t count, Task& task) const {
   const auto around = static_cast<uint32_t>(task.around.ids.size());
   const size_t padded = block_count(around, kRingLanes) * kRingLanes;
-  for (auto& stream : task.streams) stream.resize(padded);
-  task.hits.resize(around + kRingLanes);
+  for (auto& stream : task.streams) stream.resize(std::max(stream.size(), padded));
+  task.hits.resize(std::max<size_t>(task.hits.size(), around + kRingLanes));
   auto& [x, y, z, nx, ny, nz] = task.streams;
   for (uint32_t i = 0; i < around; ++i) {
     const uint32_t w = task.around.ids[i];

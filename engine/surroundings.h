@@ -38,7 +38,14 @@ class Surroundings {
   const std::vector<uint32_t>& at_risk() const { return at_risk_; }
 
  private:
-  struct Task;
+  // What one task has found, and its scratch memory; kept from search to search.
+  struct Task {
+    std::vector<VertexPair> too_near;
+    std::vector<uint32_t> at_risk;
+    SpatialHash::Collected around;  // the group
+    std::vector<float> streams[6];  // their places and normals
+    std::vector<uint32_t> hits;
+  };
   void search_group(const uint32_t* due, size_t count, Task& task) const;
   void judge(uint32_t v, uint32_t hits, Task& task) const;
   size_t group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high) const;
@@ -46,6 +53,7 @@ class Surroundings {
   const Mesh& mesh_;
   const Executor& executor_;
   SimdTarget simd_;
+  std::vector<Task> tasks_;
   std::vector<VertexPair> too_near_;
   std::vector<uint32_t> at_risk_;
 };

@@ -112,32 +112,17 @@ HWY_INLINE void stage_blocks(const Rk4Coefficients& coefficients, const SurfaceF
   const Rk4Lanes<kStage> lanes(coefficients);
   visit_blocks<kStage>(forces, streams, blocks, [&](uint32_t begin, const float* values) HWY_ATTR {
     for (uint32_t i = begin; i < begin + kRingLanes; i += kLanes) {
-      if constexpr (kStage == 3) {
-        const Arrival end =
-            arrive(lanes, streams,
-                   surface_force(forces, hn::Load(FloatTag(), values + (i - begin)), i), i);
-        store3(end.moved, streams.moved, i);
-        store3(end.velocity, streams.rate, i);
-      } else {
-        lanes.advance(streams, surface_force(forces, hn::Load(FloatTag(), values + (i - begin)), i),
-                      i);
-      }
+      const Floats value = hn::Load(FloatTag(), values + (i - begin));
+      run_stage(lanes, streams, surface_force(forces, value, i), i);
     }
   });
 }
 
 void guided_stage(int stage, const Rk4Coefficients& coefficients, const SurfaceForces& forces,
                   const Rk4Streams& streams, const Blocks& blocks) {
-  switch (stage) {
-    case 0:
-      return stage_blocks<0>(coefficients, forces, streams, blocks);
-    case 1:
-      return stage_blocks<1>(coefficients, forces, streams, blocks);
-    case 2:
-      return stage_blocks<2>(coefficients, forces, streams, blocks);
-    default:
-      return stage_blocks<3>(coefficients, forces, streams, blocks);
-  }
+  with_stage(stage, [&](auto k) HWY_ATTR {
+    stage_blocks<decltype(k)::value>(coefficients, forces, streams, blocks);
+  });
 }
 
 Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& forces,

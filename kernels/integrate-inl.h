@@ -6,6 +6,8 @@
 #define PELLICLE_KERNELS_INTEGRATE_INL_H
 #endif
 
+#include <type_traits>
+
 #include "kernels/integrate.h"
 #include "kernels/lanes-inl.h"
 #include "kernels/vectors-inl.h"
@@ -50,6 +52,22 @@ struct Rk4Lanes {
   }
 };
 
+// body(stage): once, with the stage as a constant of its type. The choice is made here, outside of
+// loops.
+template <class Body>
+HWY_INLINE void with_stage(int stage, const Body& body) {
+  switch (stage) {
+    case 0:
+      return body(std::integral_constant<int, 0>());
+    case 1:
+      return body(std::integral_constant<int, 1>());
+    case 2:
+      return body(std::integral_constant<int, 2>());
+    default:
+      return body(std::integral_constant<int, 3>());
+  }
+}
+
 // What stage 3 finds.
 struct Arrival {
   Floats3 moved, velocity;
@@ -60,6 +78,19 @@ HWY_INLINE Arrival arrive(const Rk4Lanes<3>& c, const Rk4Streams& s, const Float
   const Floats3 a = (force - w * c.damping) * c.inverse_mass;
   return {(load3(s.moved, i) + w) * c.sixth,
           load3(s.velocity, i) + (load3(s.rate, i) + a) * c.sixth};
+}
+
+// Any stage of the vertices i .. under a force; what stage 3 finds goes to moved and rate.
+template <int kStage>
+HWY_INLINE void run_stage(const Rk4Lanes<kStage>& lanes, const Rk4Streams& s, const Floats3& force,
+                          uint32_t i) {
+  if constexpr (kStage == 3) {
+    const Arrival end = arrive(lanes, s, force, i);
+    store3(end.moved, s.moved, i);
+    store3(end.velocity, s.rate, i);
+  } else {
+    lanes.advance(s, force, i);
+  }
 }
 
 HWY_INLINE Floats3 shortened(const Floats3& a, Floats squared, Floats longest) {

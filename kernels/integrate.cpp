@@ -26,29 +26,16 @@ HWY_INLINE void rk4_blocks(const Rk4Coefficients& coefficients, const Rk4Streams
   for (size_t b = 0; b < blocks.count; ++b) {
     const uint32_t begin = blocks.begin(b);
     for (uint32_t i = begin; i < begin + kRingLanes; i += kLanes) {
-      if constexpr (kStage == 3) {
-        const Arrival end = arrive(lanes, s, load3(force, i), i);
-        store3(end.moved, s.moved, i);
-        store3(end.velocity, s.rate, i);
-      } else {
-        lanes.advance(s, load3(force, i), i);
-      }
+      run_stage(lanes, s, load3(force, i), i);
     }
   }
 }
 
 void rk4_stage(int stage, const Rk4Coefficients& coefficients, const Rk4Streams& streams,
                const ConstFloat3s& force, const Blocks& blocks) {
-  switch (stage) {
-    case 0:
-      return rk4_blocks<0>(coefficients, streams, force, blocks);
-    case 1:
-      return rk4_blocks<1>(coefficients, streams, force, blocks);
-    case 2:
-      return rk4_blocks<2>(coefficients, streams, force, blocks);
-    default:
-      return rk4_blocks<3>(coefficients, streams, force, blocks);
-  }
+  with_stage(stage, [&](auto k) HWY_ATTR {
+    rk4_blocks<decltype(k)::value>(coefficients, streams, force, blocks);
+  });
 }
 
 float max_squared(const ConstFloat3s& moved, const Blocks& blocks) {

@@ -1,6 +1,8 @@
 #include "engine/sleep.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "engine/constants.h"
 #include "engine/evolution.h"
@@ -118,6 +120,38 @@ TEST_CASE("a vertex that moves along its normal wakes its neighbours, one that s
       CHECK((mesh.calm[mesh.neighbor(v, k)] < plc::kCalmPeriod) == !slides);
     }
   }
+}
+
+TEST_CASE("the rim is what sleeps next to what is awake", "[sleep]") {
+  Mesh mesh;
+  fill_sphere(mesh);
+  plc::Sleep sleep(mesh, samples::kSerial, kSpeed);
+  sleep.choose(false);
+  CHECK(sleep.awake_and_rim() == sleep.awake());
+  rest(mesh, sleep, plc::kCalmPeriod);
+  mesh.wake(100);
+  mesh.wake(800);
+  sleep.choose(false);
+  std::set<uint32_t> expected(sleep.awake().begin(), sleep.awake().end());
+  for (const uint32_t block : sleep.awake()) {
+    for (uint32_t v = block * plc::kRingLanes; v < (block + 1) * plc::kRingLanes; ++v) {
+      for (const uint32_t w : mesh.ring(v)) expected.insert(w / plc::kRingLanes);
+    }
+  }
+  CHECK(expected.size() > 4);
+  const auto& found = sleep.awake_and_rim();
+  CHECK(std::vector<uint32_t>(expected.begin(), expected.end()) == found);
+}
+
+TEST_CASE("vertices that were created since are not taken for sleepers", "[sleep]") {
+  Mesh mesh;
+  fill_sphere(mesh);
+  plc::Sleep sleep(mesh, samples::kSerial, 0);
+  sleep.choose(false);
+  CHECK_FALSE(sleep.any_asleep());
+  mesh.reserve(mesh.slots() + 64);
+  for (int i = 0; i < 40; ++i) mesh.create({2, 2, 2}, {});
+  CHECK_FALSE(sleep.any_asleep());
 }
 
 TEST_CASE("who is awake does not depend on the executor", "[sleep]") {

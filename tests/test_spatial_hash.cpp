@@ -137,6 +137,50 @@ TEST_CASE("moved, new and deleted vertices are seen as they are now", "[spatial_
   check_queries(mesh, hash, random, 10, 5);
 }
 
+TEST_CASE("vertices that have moved within the slack are found where they are", "[spatial_hash]") {
+  samples::Random random(19);
+  Mesh mesh;
+  scatter(mesh, random, 4000, 10);
+  SpatialHash hash;
+  constexpr float kSlack = 0.25F;
+  hash.build(mesh, 1, samples::kSerial, kSlack);
+  for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    mesh.place(v, mesh.at(v) + somewhere(random, -0.249, 0.249));
+  }
+  check_queries(mesh, hash, random, 10, 3);
+  CHECK(hash.inserted() == 0);
+  for (uint32_t v = 0; v < mesh.slots(); v += 3) {
+    mesh.place(v, somewhere(random, -10, 10));
+    hash.insert(v, mesh.at(v));
+  }
+  CHECK(hash.inserted() == 1334);
+  check_queries(mesh, hash, random, 10, 3);
+}
+
+TEST_CASE("what is collected of a box is what is visited of it", "[spatial_hash]") {
+  samples::Random random(20);
+  Mesh mesh;
+  scatter(mesh, random, 3000, 8);
+  SpatialHash hash;
+  hash.build(mesh, 1.5F, samples::kSerial, 0.1F);
+  for (uint32_t v = 0; v < mesh.slots(); v += 4) {
+    mesh.place(v, somewhere(random, -8, 8));
+    hash.insert(v, mesh.at(v));
+  }
+  for (uint32_t v = 3; v < mesh.slots(); v += 5) mesh.destroy(v);
+  SpatialHash::Collected collected;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 low = somewhere(random, -9, 9);
+    const Vec3 high = low + somewhere(random, 0, 5);
+    hash.collect(mesh, low, high, collected);
+    std::set<uint32_t> living;
+    for (const uint32_t v : collected.ids) {
+      if (mesh.alive(v)) living.insert(v);
+    }
+    CHECK(living == visited(mesh, hash, low, high));
+  }
+}
+
 TEST_CASE("queries see vertices in one order whatever built the table", "[spatial_hash]") {
   samples::Random random(17);
   Mesh mesh;
