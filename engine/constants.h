@@ -48,7 +48,7 @@ inline constexpr int kConfirmPause = 20;
 // 364 ns at 2, 327 at 3, 283 at 4.
 inline constexpr float kHashCell = 4.0F;
 // Built anew when more than one in so many vertices would have been entered a second time.
-inline constexpr uint32_t kHashInsertions = 4;
+inline constexpr uint32_t kHashInsertions = 32;
 
 // ---- resolution (figure 9) ------------------------------------------------------------------
 

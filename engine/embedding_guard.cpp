@@ -4,7 +4,7 @@
 
 #include "engine/constants.h"
 #include "engine/deletion.h"
-#include "engine/triangle_intersection.h"
+#include "engine/vertex_star.h"
 
 namespace plc {
 
@@ -14,60 +14,33 @@ Proposal::Face face_of(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) {
   return {{a, b, c}, {mesh.at(a), mesh.at(b), mesh.at(c)}};
 }
 
-struct Box {
-  Vec3 low, high;
-
-  static Box around(const std::array<Vec3, 3>& p) {
-    Box box{p[0], p[0]};
-    box.add(p[1]);
-    box.add(p[2]);
-    return box;
-  }
-  void add(Vec3 p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  bool meets(const Box& o) const {
-    return low.x <= o.high.x && o.low.x <= high.x && low.y <= o.high.y && o.low.y <= high.y &&
-           low.z <= o.high.z && o.low.z <= high.z;
-  }
-  bool contains(Vec3 p) const {
-    return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z &&
-           p.z <= high.z;
-  }
-};
-
-bool meet(const Proposal::Face& f, const Proposal::Face& g) {
-  const auto triangle = [](const Proposal::Face& face) {
-    Triangle t{};
-    for (size_t i = 0; i < 3; ++i) {
-      t.corner[i] = {face.place[i].x, face.place[i].y, face.place[i].z};
-      t.vertex[i] = face.id[i];
-    }
-    return t;
-  };
-  return triangles_intersect(triangle(f), triangle(g));
+Point3 point(Vec3 p) {
+  return {p.x, p.y, p.z};
 }
 
-// Faces of zero area meet nothing by the definition of triangle_intersection.h; they may not be
-// made.
-bool any_degenerate(const Proposal& proposal) {
-  return std::any_of(proposal.faces.begin(), proposal.faces.end(), [](const Proposal::Face& face) {
-    const auto point = [&](size_t i) {
-      return Point3{face.place[i].x, face.place[i].y, face.place[i].z};
-    };
-    return collinear(point(0), point(1), point(2));
-  });
+Packed packed(Vec3 p) {
+  return {p.x, p.y, p.z, 0};
 }
 
-// New faces against one another.
-bool new_faces_meet(const Proposal& proposal, const std::vector<Box>& boxes) {
-  for (size_t i = 0; i < boxes.size(); ++i) {
-    for (size_t j = 0; j < i; ++j) {
-      if (boxes[i].meets(boxes[j]) && meet(proposal.faces[i], proposal.faces[j])) return true;
-    }
+Triangle triangle_of(const Proposal::Face& face) {
+  return {{point(face.place[0]), point(face.place[1]), point(face.place[2])},
+          {face.id[0], face.id[1], face.id[2]}};
+}
+
+bool contains(const FaceBox& box, const Packed& p) {
+  const float at[4] = {p.x, p.y, p.z, 0};
+  int outside = 0;
+  for (int k = 0; k < 4; ++k) {
+    outside |= static_cast<int>(at[k] < box.low[k]) | static_cast<int>(at[k] > box.high[k]);
   }
-  return false;
+  return outside == 0;
+}
+
+void include(FaceBox& all, const FaceBox& box) {
+  for (int k = 0; k < 4; ++k) {
+    all.low[k] = std::min(all.low[k], box.low[k]);
+    all.high[k] = std::max(all.high[k], box.high[k]);
+  }
 }
 
 }  // namespace
@@ -82,11 +55,13 @@ Proposal propose_inversion(const Mesh& mesh, const Edge& e) {
 Proposal propose_deletion(const Mesh& mesh, const Edge& e, Vec3 place) {
   Proposal proposal;
   const Neighbors ring = merged_ring(mesh, e);
+  std::vector<Vec3> around;
+  for (const uint32_t v : ring) around.push_back(mesh.at(v));
   for (uint32_t k = 0; k < ring.size(); ++k) {
-    const uint32_t a = ring[k];
-    const uint32_t b = ring.next(k);
-    proposal.faces.push_back({{e.u, a, b}, {place, mesh.at(a), mesh.at(b)}});
+    const uint32_t next = k + 1 == ring.size() ? 0 : k + 1;
+    proposal.faces.push_back({{e.u, ring[k], ring[next]}, {place, around[k], around[next]}});
   }
+  proposal.plain = fan_is_plain(place, around.data(), around.size());
   proposal.removed_corners = {e.u, e.v};
   return proposal;
 }
@@ -154,18 +129,25 @@ Proposal propose_axial(const Mesh& mesh, const AxialPlan& plan) {
   return proposal;
 }
 
-bool embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal) {
-  std::vector<Box> boxes;
-  for (const auto& face : proposal.faces) boxes.push_back(Box::around(face.place));
-  if (any_degenerate(proposal) || new_faces_meet(proposal, boxes)) return false;
-  Box all = boxes[0];
-  for (const Box& box : boxes) {
-    all.add(box.low);
-    all.add(box.high);
+bool EmbeddingGuard::embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal) {
+  faces_.clear();
+  boxes_.clear();
+  for (const auto& face : proposal.faces) {
+    faces_.push_back(triangle_of(face));
+    boxes_.push_back(
+        face_box(packed(face.place[0]), packed(face.place[1]), packed(face.place[2])));
   }
+  if (!proposal.plain && new_faces_meet()) return false;
+  FaceBox all = boxes_[0];
+  for (const FaceBox& box : boxes_) include(all, box);
   const float reach = kFaceReach * static_cast<float>(mesh.delta);
-  const Vec3 span{reach, reach, reach};
-  const Box searched{all.low - span, all.high + span};
+  FaceBox searched = all;
+  for (int k = 0; k < 3; ++k) {
+    searched.low[k] -= reach;
+    searched.high[k] += reach;
+  }
+  hash.collect(mesh, {searched.low[0], searched.low[1], searched.low[2]},
+               {searched.high[0], searched.high[1], searched.high[2]}, around_);
   const auto removed = [&](uint32_t v) {
     const auto& gone = proposal.removed_corners;
     return std::find(gone.begin(), gone.end(), v) != gone.end();
@@ -174,26 +156,43 @@ bool embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal)
     const auto has = [&](uint32_t v) { return v == x || v == a || v == b; };
     return has(proposal.removed_edge[0]) && has(proposal.removed_edge[1]);
   };
-  bool clear = true;
-  hash.visit_box(mesh, searched.low, searched.high, [&](uint32_t x, Vec3 p) {
-    if (!clear || removed(x)) return;
-    const uint32_t d = mesh.valence(x);
-    for (uint32_t k = 0; k < d && clear; ++k) {
-      const uint32_t a = mesh.neighbor(x, k);
-      const uint32_t b = mesh.neighbor(x, k + 1 == d ? 0 : k + 1);
+  const RingView rings = mesh.rings();
+  const Packed* const at = mesh.packed.data();
+  for (const uint32_t x : around_.ids) {
+    const uint32_t d = rings.valence[x];
+    if (d == 0 || removed(x)) continue;
+    uint32_t b = rings.slot(x, d - 1);
+    for (uint32_t k = 0; k < d; ++k) {
+      const uint32_t a = b;
+      b = rings.slot(x, k);
+      const FaceBox box = face_box(at[x], at[a], at[b]);
+      if (!boxes_overlap(box, all)) continue;
       // Each face once: from its smallest corner within the box.
-      const Vec3 pa = mesh.at(a);
-      const Vec3 pb = mesh.at(b);
-      if ((a < x && searched.contains(pa)) || (b < x && searched.contains(pb))) continue;
-      const Proposal::Face face{{x, a, b}, {p, pa, pb}};
-      const Box box = Box::around(face.place);
-      if (!box.meets(all) || removed(a) || removed(b) || removed_edge(x, a, b)) continue;
-      for (size_t i = 0; i < boxes.size() && clear; ++i) {
-        clear = !boxes[i].meets(box) || !meet(proposal.faces[i], face);
+      if ((a < x && contains(searched, at[a])) || (b < x && contains(searched, at[b]))) continue;
+      if (removed(a) || removed(b) || removed_edge(x, a, b)) continue;
+      const uint32_t corners[3] = {x, a, b};
+      const Triangle face = make_triangle(at, corners);
+      for (size_t i = 0; i < boxes_.size(); ++i) {
+        if (boxes_overlap(boxes_[i], box) && triangles_intersect(faces_[i], face)) return false;
       }
     }
-  });
-  return clear;
+  }
+  return true;
+}
+
+// New faces against one another. Faces of zero area meet nothing by the definition of
+// triangle_intersection.h; they may not be made.
+bool EmbeddingGuard::new_faces_meet() const {
+  for (size_t i = 0; i < faces_.size(); ++i) {
+    const Point3* p = faces_[i].corner;
+    if (collinear(p[0], p[1], p[2])) return true;
+    for (size_t j = 0; j < i; ++j) {
+      if (boxes_overlap(boxes_[i], boxes_[j]) && triangles_intersect(faces_[i], faces_[j])) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 }  // namespace plc

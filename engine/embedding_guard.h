@@ -6,6 +6,7 @@
 #include "engine/annular.h"
 #include "engine/axial.h"
 #include "engine/spatial_hash.h"
+#include "engine/triangle_intersection.h"
 
 namespace plc {
 
@@ -21,6 +22,8 @@ struct Proposal {
   std::vector<uint32_t> removed_corners;
   // ... and those that have both ends of this edge.
   std::array<uint32_t, 2> removed_edge{~0U, ~0U};
+  // The new faces are known to have an area and to meet each other nowhere (vertex_star.h).
+  bool plain = false;
 };
 
 Proposal propose_inversion(const Mesh& mesh, const Edge& edge);
@@ -29,9 +32,20 @@ Proposal propose_annular(const Mesh& mesh, const Cycle& cycle,
                          const std::array<CutCopy, 6>& copies);
 Proposal propose_axial(const Mesh& mesh, const AxialPlan& plan);
 
-// True when no new face meets another new face, or a face that stays, elsewhere than in common
-// corners and edges; exact. The hash must hold every living vertex at its place. Faces with edges
-// beyond those that kFaceReach allows for may be overlooked.
-bool embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal);
+// Keeps its buffers from call to call; not thread-safe.
+class EmbeddingGuard {
+ public:
+  // True when no new face meets another new face, or a face that stays, elsewhere than in common
+  // corners and edges; exact. The hash must hold every living vertex at its place. Faces with edges
+  // beyond those that kFaceReach allows for may be overlooked.
+  bool embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal);
+
+ private:
+  bool new_faces_meet() const;
+
+  std::vector<Triangle> faces_;  // the new ones
+  std::vector<FaceBox> boxes_;
+  SpatialHash::Collected around_;
+};
 
 }  // namespace plc

@@ -9,7 +9,6 @@
 #include "engine/creation.h"
 #include "engine/deletion.h"
 #include "engine/edge_constraints.h"
-#include "engine/embedding_guard.h"
 #include "engine/inversion.h"
 #include "engine/proximity.h"
 #include "kernels/ring_forces.h"
@@ -339,7 +338,7 @@ bool Resolution::apply_creation(const Candidate& candidate) {
 
 bool Resolution::apply_inversion(const Candidate& candidate) {
   const Edge& e = candidate.edge;
-  if (!embeds(mesh_, hash_, propose_inversion(mesh_, e))) return false;
+  if (!guard_.embeds(mesh_, hash_, propose_inversion(mesh_, e))) return false;
   invert_edge(mesh_, e);
   for (const uint32_t v : {e.u, e.v, e.a, e.b}) involve(v);
   return true;
@@ -354,7 +353,7 @@ bool Resolution::apply_deletion(const Candidate& candidate, OperationCounts& cou
     return true;
   }
   for (const Vec3 place : {midpoint(mesh_.at(e.u), mesh_.at(e.v)), mesh_.at(e.u), mesh_.at(e.v)}) {
-    if (!embeds(mesh_, hash_, propose_deletion(mesh_, e, place))) continue;
+    if (!guard_.embeds(mesh_, hash_, propose_deletion(mesh_, e, place))) continue;
     delete_edge(mesh_, e, place);
     moved(e.u);
     changed_.push_back(e.u);
@@ -368,7 +367,7 @@ bool Resolution::apply_annular(const Candidate& candidate) {
   const Edge& e = candidate.edge;
   const Cycle cycle{{e.u, e.v, e.a}};
   const auto copies = annular_copies(mesh_, cycle, kAnnularRetreat);
-  if (!embeds(mesh_, hash_, propose_annular(mesh_, cycle, copies))) return false;
+  if (!guard_.embeds(mesh_, hash_, propose_annular(mesh_, cycle, copies))) return false;
   const auto right = cut_cycle(mesh_, cycle, copies, next_cut_++, iteration_);
   for (uint32_t i = 0; i < 3; ++i) {
     for (const uint32_t v : {cycle.corner[i], right[i]}) {
@@ -381,7 +380,7 @@ bool Resolution::apply_annular(const Candidate& candidate) {
 
 bool Resolution::apply_axial(const Candidate& candidate) {
   const AxialPlan plan = plan_axial(mesh_, candidate.edge.u, candidate.edge.v);
-  if (!embeds(mesh_, hash_, propose_axial(mesh_, plan))) return false;
+  if (!guard_.embeds(mesh_, hash_, propose_axial(mesh_, plan))) return false;
   for (const uint32_t v : join(mesh_, plan)) moved(v);
   return true;
 }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "engine/candidate.h"
+#include "engine/embedding_guard.h"
 #include "engine/mesh.h"
 #include "engine/spatial_hash.h"
 #include "engine/statistics.h"
@@ -83,6 +84,7 @@ class Resolution {
   std::vector<uint32_t> stamp_;       // by vertex: the queue it is in
   std::vector<uint32_t> claim_;       // by vertex: the round that claimed it
   std::vector<uint32_t> footprint_;   // of the candidate at hand
+  EmbeddingGuard guard_;
   uint32_t stamp_count_ = 0;
   uint32_t round_ = 0;
 };

@@ -1,6 +1,7 @@
 #include "engine/sleep.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "engine/blocks.h"
@@ -14,7 +15,9 @@ constexpr size_t kTaskBlocks = kGrain / kRingLanes;
 
 bool all_calm(const Mesh& mesh, uint32_t block) {
   const uint8_t* calm = mesh.calm.data() + size_t{block} * kRingLanes;
-  return *std::min_element(calm, calm + kRingLanes) >= kCalmPeriod;
+  uint8_t least = 255;
+  for (uint32_t lane = 0; lane < kRingLanes; ++lane) least = std::min(least, calm[lane]);
+  return least >= kCalmPeriod;
 }
 
 }  // namespace
@@ -42,29 +45,30 @@ void Sleep::choose(bool all) {
 }
 
 void Sleep::find_rim() {
-  awake_and_rim_ = awake_;
-  if (!any_asleep()) return;
-  const size_t tasks = block_count(awake_.size(), kTaskBlocks);
-  found_.resize(std::max(found_.size(), tasks));
-  run_blocks(executor_, awake_.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {
-    auto& rim = found_[task];
-    rim.clear();
+  if (!any_asleep()) {
+    awake_and_rim_ = awake_;
+    return;
+  }
+  touched_.assign(asleep_.size(), 0);
+  const RingView rings = mesh_.rings();
+  run_blocks(executor_, awake_.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {
+    // Several tasks may write the same 1.
+    const auto touch = [&](uint32_t block) {
+      std::atomic_ref<uint8_t>(touched_[block]).store(1, std::memory_order_relaxed);
+    };
     for (size_t i = begin; i < end; ++i) {
-      for (uint32_t v = awake_[i] * kRingLanes; v < (awake_[i] + 1) * kRingLanes; ++v) {
-        const uint32_t d = mesh_.rings().valence[v];
-        for (uint32_t k = 0; k < d; ++k) {
-          const uint32_t block = mesh_.neighbor(v, k) / kRingLanes;
-          if (asleep_[block] != 0 && (rim.empty() || rim.back() != block)) rim.push_back(block);
-        }
+      touch(awake_[i]);
+      const uint32_t first = awake_[i] * kRingLanes;
+      for (uint32_t v = first; v < first + kRingLanes; ++v) {
+        const uint32_t d = rings.valence[v];
+        for (uint32_t k = 0; k < d; ++k) touch(rings.slot(v, k) / kRingLanes);
       }
     }
   });
-  for (size_t task = 0; task < tasks; ++task) {
-    awake_and_rim_.insert(awake_and_rim_.end(), found_[task].begin(), found_[task].end());
+  awake_and_rim_.clear();
+  for (uint32_t block = 0; block < touched_.size(); ++block) {
+    if (touched_[block] != 0) awake_and_rim_.push_back(block);
   }
-  std::sort(awake_and_rim_.begin(), awake_and_rim_.end());
-  awake_and_rim_.erase(std::unique(awake_and_rim_.begin(), awake_and_rim_.end()),
-                       awake_and_rim_.end());
 }
 
 void Sleep::observe() {
@@ -78,16 +82,27 @@ void Sleep::observe() {
     wakers.clear();
     for (size_t i = begin; i < end; ++i) {
       const uint32_t first = awake_[i] * kRingLanes;
-      for (uint32_t v = first; v < first + kRingLanes; ++v) {
-        const Vec3 moved = mesh_.displacement.at(v);
-        const float normal = std::abs(dot(moved, mesh_.normal.at(v)));
-        const bool calm = normal < along && dot(moved, moved) < slide * slide;
-        mesh_.calm[v] = calm ? static_cast<uint8_t>(std::min(mesh_.calm[v] + 1, 255)) : uint8_t{0};
+      // Loops without branches over whole blocks, which compilers make vector code of.
+      int32_t calm[kRingLanes], stir[kRingLanes];
+      for (uint32_t lane = 0; lane < kRingLanes; ++lane) {
+        const Vec3 moved = mesh_.displacement.at(first + lane);
+        const float normal = std::abs(dot(moved, mesh_.normal.at(first + lane)));
+        calm[lane] = static_cast<int32_t>(normal < along) &
+                     static_cast<int32_t>(dot(moved, moved) < slide * slide);
         // Whole steps only: what moves less than one in an iteration wakes nobody.
-        const float moved_steps = std::min(normal * steps, 256.0F);
-        const int stir = mesh_.stir[v] + static_cast<int>(moved_steps);
-        if (stir >= 256) wakers.push_back(v);
-        mesh_.stir[v] = stir >= 256 ? uint8_t{0} : static_cast<uint8_t>(stir);
+        stir[lane] = static_cast<int32_t>(std::min(normal * steps, 256.0F));
+      }
+      int32_t most = 0;
+      for (uint32_t lane = 0; lane < kRingLanes; ++lane) {
+        const uint32_t v = first + lane;
+        mesh_.calm[v] = static_cast<uint8_t>(calm[lane] * std::min(mesh_.calm[v] + 1, 255));
+        stir[lane] += mesh_.stir[v];
+        most = std::max(most, stir[lane]);
+        mesh_.stir[v] = stir[lane] >= 256 ? uint8_t{0} : static_cast<uint8_t>(stir[lane]);
+      }
+      if (most < 256) continue;
+      for (uint32_t lane = 0; lane < kRingLanes; ++lane) {
+        if (stir[lane] >= 256) wakers.push_back(first + lane);
       }
     }
   });

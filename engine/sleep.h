@@ -48,7 +48,7 @@ class Sleep {
   float calm_speed_;
   bool any_asleep_ = false;
   std::vector<uint32_t> awake_, fallen_, awake_and_rim_;
-  std::vector<uint8_t> asleep_;               // by block
+  std::vector<uint8_t> asleep_, touched_;     // by block
   std::vector<std::vector<uint32_t>> found_;  // per task
 };
 

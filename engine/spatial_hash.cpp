@@ -85,9 +85,19 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
 }
 
 void SpatialHash::insert(uint32_t v, Vec3 p) {
-  const uint32_t list = bucket(p) >> kLateShift;
+  const uint32_t b = bucket(p);
+  if (has_entry(b, v)) return;
+  const uint32_t list = b >> kLateShift;
   late_.push_back({v, late_head_[list]});
   late_head_[list] = static_cast<uint32_t>(late_.size() - 1);
+}
+
+bool SpatialHash::has_entry(uint32_t b, uint32_t v) const {
+  const uint32_t* const end = entries_.data() + start_[b + 1];
+  if (std::find(entries_.data() + start_[b], end, v) != end) return true;
+  uint32_t i = late_head_[b >> kLateShift];
+  while (i != kEnd && late_[i].id != v) i = late_[i].next;
+  return i != kEnd;
 }
 
 void SpatialHash::collect(const Mesh& mesh, Vec3 low, Vec3 high, Collected& out) const {

@@ -26,9 +26,10 @@ class SpatialHash {
   // each axis, from where it was when it was last entered: queries look that much farther. The same
   // table for any executor.
   void build(const Mesh& mesh, float cell, const Executor& executor, float slack = 0);
-  // A vertex that was created since, or has moved by more than the slack.
+  // A vertex that was created since, or has moved by more than the slack. Where queries would find
+  // it in any case, nothing.
   void insert(uint32_t v, Vec3 p);
-  // Vertices that insert() has been called for since build().
+  // Entries that insert() has made since build().
   size_t inserted() const { return late_.size(); }
 
   // The vertices within the box [low, high], some perhaps twice, and perhaps some that have been
@@ -57,6 +58,8 @@ class SpatialHash {
   uint32_t row(int32_t y, int32_t z) const {
     return static_cast<uint32_t>(y) * 73856093U ^ static_cast<uint32_t>(z) * 19349663U;
   }
+  // Whether queries of bucket b come across v.
+  bool has_entry(uint32_t b, uint32_t v) const;
   uint32_t bucket(Vec3 p) const {
     return (static_cast<uint32_t>(cell_of(p.x)) + row(cell_of(p.y), cell_of(p.z))) & mask_;
   }

@@ -35,21 +35,8 @@ bool winds_once(const Edges& e, uint32_t count, double nx, double ny, double nz)
   return entries == 1;
 }
 
-}  // namespace
-
-bool star_is_plain(const RingView& rings, const Packed* positions, uint32_t v) {
-  const uint32_t count = rings.valence[v];
-  if (count > kMaxRing || count < 3) return false;
-  const Packed& p = positions[v];
-  Edges e;
-  double longest = 0;
-  for (uint32_t k = 0; k < count; ++k) {
-    const Packed& r = positions[rings.slot(v, k)];
-    e.x[k] = static_cast<double>(r.x) - static_cast<double>(p.x);
-    e.y[k] = static_cast<double>(r.y) - static_cast<double>(p.y);
-    e.z[k] = static_cast<double>(r.z) - static_cast<double>(p.z);
-    longest = std::max(longest, e.x[k] * e.x[k] + e.y[k] * e.y[k] + e.z[k] * e.z[k]);
-  }
+// The edges e[0 .. count - 1] from the centre, the longest of which is the root of `longest`.
+bool edges_are_plain(Edges& e, uint32_t count, double longest) {
   e.x[count] = e.x[0];
   e.y[count] = e.y[0];
   e.z[count] = e.z[0];
@@ -71,6 +58,33 @@ bool star_is_plain(const RingView& rings, const Packed* positions, uint32_t v) {
     plain &= cx[k] * nx + cy[k] * ny + cz[k] * nz > doubt;
   }
   return plain && winds_once(e, count, nx, ny, nz);
+}
+
+}  // namespace
+
+bool fan_is_plain(const Vec3& centre, const Vec3* ring, size_t count) {
+  if (count > kMaxRing || count < 3) return false;
+  Edges e;
+  double longest = 0;
+  for (size_t k = 0; k < count; ++k) {
+    e.x[k] = static_cast<double>(ring[k].x) - static_cast<double>(centre.x);
+    e.y[k] = static_cast<double>(ring[k].y) - static_cast<double>(centre.y);
+    e.z[k] = static_cast<double>(ring[k].z) - static_cast<double>(centre.z);
+    longest = std::max(longest, e.x[k] * e.x[k] + e.y[k] * e.y[k] + e.z[k] * e.z[k]);
+  }
+  return edges_are_plain(e, static_cast<uint32_t>(count), longest);
+}
+
+bool star_is_plain(const RingView& rings, const Packed* positions, uint32_t v) {
+  const uint32_t count = rings.valence[v];
+  if (count > kMaxRing) return false;
+  Vec3 ring[kMaxRing];
+  for (uint32_t k = 0; k < count; ++k) {
+    const Packed& p = positions[rings.slot(v, k)];
+    ring[k] = {p.x, p.y, p.z};
+  }
+  const Packed& p = positions[v];
+  return fan_is_plain({p.x, p.y, p.z}, ring, count);
 }
 
 }  // namespace plc

@@ -1,7 +1,9 @@
 // The faces around one vertex, and whether they can meet each other.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
+#include "engine/vec3.h"
 #include "kernels/ring.h"
 
 namespace plc {
@@ -10,7 +12,9 @@ namespace plc {
 // the ring instead of exact tests of all pairs. Sufficient, not necessary: seen along the sum n of
 // the faces' normals, all faces turn counter-clockwise and go around v once, so that the star
 // projects one to one along n. Certain in spite of rounding; false where rounding leaves a doubt.
-// v is alive; positions by id.
+// Neither has one of them a zero area then. v is alive; positions by id.
 bool star_is_plain(const RingView& rings, const Packed* positions, uint32_t v);
+// Of the faces (centre, ring[k], ring[k + 1]) around a point.
+bool fan_is_plain(const Vec3& centre, const Vec3* ring, size_t count);
 
 }  // namespace plc

@@ -43,13 +43,13 @@ bool admitted(const Mesh& mesh, const plc::SpatialHash& hash, const plc::Candida
     case Operation::kAnnular: {
       const plc::Cycle cycle{{e.u, e.v, e.a}};
       const auto copies = plc::annular_copies(mesh, cycle, plc::kAnnularRetreat);
-      return plc::embeds(mesh, hash, plc::propose_annular(mesh, cycle, copies));
+      return plc::EmbeddingGuard().embeds(mesh, hash, plc::propose_annular(mesh, cycle, copies));
     }
     case Operation::kDeletion:
       if (mesh.valence(e.a) == 3 || mesh.valence(e.b) == 3) return true;
       for (const plc::Vec3 place :
            {plc::midpoint(mesh.at(e.u), mesh.at(e.v)), mesh.at(e.u), mesh.at(e.v)}) {
-        if (plc::embeds(mesh, hash, plc::propose_deletion(mesh, e, place))) return true;
+        if (plc::EmbeddingGuard().embeds(mesh, hash, plc::propose_deletion(mesh, e, place))) return true;
       }
       return false;
     default:

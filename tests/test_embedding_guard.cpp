@@ -68,7 +68,7 @@ std::vector<PlacedFace> after(const Mesh& mesh, const Proposal& proposal) {
 bool admitted(const Mesh& mesh, const Proposal& proposal) {
   plc::SpatialHash hash;
   hash.build(mesh, plc::kMinApart * static_cast<float>(mesh.delta), samples::kSerial);
-  return plc::embeds(mesh, hash, proposal);
+  return plc::EmbeddingGuard().embeds(mesh, hash, proposal);
 }
 
 // Proposes and carries out: visit(mesh before, proposal, apply).
