@@ -1,7 +1,7 @@
 // A transformation that a violated constraint asks for, found by reading only.
 #pragma once
 #include <cstdint>
-#include <tuple>
+#include <cstring>
 
 #include "engine/edge.h"
 
@@ -23,9 +23,19 @@ struct Candidate {
 
   // The total order of a pass: no two candidates of a pass compare equal.
   friend bool operator<(const Candidate& l, const Candidate& r) {
-    return std::tie(l.operation, l.key, l.edge.u, l.edge.v) <
-           std::tie(r.operation, r.key, r.edge.u, r.edge.v);
+    const uint64_t of_l = l.rank(), of_r = r.rank();
+    return of_l != of_r ? of_l < of_r : l.ends() < r.ends();
   }
+
+ private:
+  // In the order of the operation, then of the key: floats of one sign have the order of their bits.
+  uint64_t rank() const {
+    uint32_t bits;
+    std::memcpy(&bits, &key, sizeof bits);
+    bits ^= key < 0 ? ~0U : 1U << 31;
+    return uint64_t{static_cast<uint8_t>(operation)} << 32 | bits;
+  }
+  uint64_t ends() const { return uint64_t{edge.u} << 32 | edge.v; }
 };
 
 }  // namespace plc

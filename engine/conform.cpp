@@ -105,7 +105,7 @@ void settle(Mesh& mesh, Resolution& resolution, OperationCounts& counts) {
   resolution.restart();
   for (int pass = 0; pass < kConformPasses; ++pass) {
     const int64_t before = applied(counts);
-    resolution.take_due(true);
+    resolution.take_all();
     resolution.run(kIteration, counts);
     if (applied(counts) == before) break;
   }

@@ -129,7 +129,7 @@ Proposal propose_axial(const Mesh& mesh, const AxialPlan& plan) {
   return proposal;
 }
 
-bool EmbeddingGuard::embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal) {
+void EmbeddingGuard::take(const Proposal& proposal) {
   faces_.clear();
   boxes_.clear();
   for (const auto& face : proposal.faces) {
@@ -137,17 +137,40 @@ bool EmbeddingGuard::embeds(const Mesh& mesh, const SpatialHash& hash, const Pro
     boxes_.push_back(
         face_box(packed(face.place[0]), packed(face.place[1]), packed(face.place[2])));
   }
+  box_ = boxes_[0];
+  for (const FaceBox& box : boxes_) include(box_, box);
+}
+
+bool EmbeddingGuard::embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal) {
+  take(proposal);
   if (!proposal.plain && new_faces_meet()) return false;
-  FaceBox all = boxes_[0];
-  for (const FaceBox& box : boxes_) include(all, box);
   const float reach = kFaceReach * static_cast<float>(mesh.delta);
-  FaceBox searched = all;
+  FaceBox searched = box_;
   for (int k = 0; k < 3; ++k) {
     searched.low[k] -= reach;
     searched.high[k] += reach;
   }
   hash.collect(mesh, {searched.low[0], searched.low[1], searched.low[2]},
                {searched.high[0], searched.high[1], searched.high[2]}, around_);
+  // Each face once: from its smallest corner within the box.
+  return clear_of(mesh, proposal, around_.ids.data(), around_.ids.size(),
+                  [&](uint32_t x, uint32_t a, uint32_t b) {
+                    return (a > x || !contains(searched, mesh.packed[a])) &&
+                           (b > x || !contains(searched, mesh.packed[b]));
+                  });
+}
+
+bool EmbeddingGuard::embeds_beside(const Mesh& mesh, const Proposal& proposal,
+                                   const std::vector<uint32_t>& centres) {
+  take(proposal);
+  return clear_of(mesh, proposal, centres.data(), centres.size(),
+                  [](uint32_t, uint32_t, uint32_t) { return true; });
+}
+
+// The faces (x, a, b) around the given vertices that stay and for which counts(x, a, b).
+template <typename Counts>
+bool EmbeddingGuard::clear_of(const Mesh& mesh, const Proposal& proposal, const uint32_t* ids,
+                              size_t count, const Counts& counts) const {
   const auto removed = [&](uint32_t v) {
     const auto& gone = proposal.removed_corners;
     return std::find(gone.begin(), gone.end(), v) != gone.end();
@@ -158,17 +181,15 @@ bool EmbeddingGuard::embeds(const Mesh& mesh, const SpatialHash& hash, const Pro
   };
   const RingView rings = mesh.rings();
   const Packed* const at = mesh.packed.data();
-  for (const uint32_t x : around_.ids) {
-    const uint32_t d = rings.valence[x];
+  for (const uint32_t* id = ids; id != ids + count; ++id) {
+    const uint32_t x = *id, d = rings.valence[x];
     if (d == 0 || removed(x)) continue;
     uint32_t b = rings.slot(x, d - 1);
     for (uint32_t k = 0; k < d; ++k) {
       const uint32_t a = b;
       b = rings.slot(x, k);
       const FaceBox box = face_box(at[x], at[a], at[b]);
-      if (!boxes_overlap(box, all)) continue;
-      // Each face once: from its smallest corner within the box.
-      if ((a < x && contains(searched, at[a])) || (b < x && contains(searched, at[b]))) continue;
+      if (!boxes_overlap(box, box_) || !counts(x, a, b)) continue;
       if (removed(a) || removed(b) || removed_edge(x, a, b)) continue;
       const uint32_t corners[3] = {x, a, b};
       const Triangle face = make_triangle(at, corners);

@@ -39,12 +39,22 @@ class EmbeddingGuard {
   // corners and edges; exact. The hash must hold every living vertex at its place. Faces with edges
   // beyond those that kFaceReach allows for may be overlooked.
   bool embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal);
+  // Of the faces that stay only those around these vertices, and no new faces against each other.
+  bool embeds_beside(const Mesh& mesh, const Proposal& proposal,
+                     const std::vector<uint32_t>& centres);
+  // Around the new faces of the last call.
+  const FaceBox& box() const { return box_; }
 
  private:
+  void take(const Proposal& proposal);
   bool new_faces_meet() const;
+  template <typename Counts>
+  bool clear_of(const Mesh& mesh, const Proposal& proposal, const uint32_t* ids, size_t count,
+                const Counts& counts) const;
 
   std::vector<Triangle> faces_;  // the new ones
   std::vector<FaceBox> boxes_;
+  FaceBox box_{};
   SpatialHash::Collected around_;
 };
 

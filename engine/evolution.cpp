@@ -64,7 +64,7 @@ Status Evolution::iterate(const Guide& guide, Seconds& seconds, OperationCounts&
 
 void Evolution::check_all(Seconds& seconds, OperationCounts& counts) {
   const double start = now();
-  resolution_.take_due(true);
+  resolution_.take_all();
   resolution_.run(++iteration_, counts);
   passed("check of all");
   const double end = now();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/box_lanes.h"
 #include "engine/self_intersection.h"
 #include "kernels/ring.h"
 #include "pyramid/buffer.h"
@@ -42,16 +43,10 @@ class MeetingSearch {
   const uint32_t* face(uint32_t f) const { return faces_.data() + 3 * static_cast<size_t>(f); }
 
  private:
-  static constexpr uint32_t kLanes = 8;
-  struct Box {
-    float low[3], high[3];
-  };
-  struct alignas(64) Boxes {
-    float low[3][kLanes], high[3][kLanes];
-  };
+  static constexpr uint32_t kLanes = BoxLanes::kLanes;
   // Level 0: nodes of faces; level k: nodes of nodes of level k - 1.
   struct Level {
-    Buffer<Boxes> boxes;
+    Buffer<BoxLanes> boxes;
     Buffer<uint8_t> marked;  // a bit per child: some face in it is
   };
   struct Mesh {
@@ -66,10 +61,7 @@ class MeetingSearch {
   };
   using Pairs = std::vector<FacePair>;
 
-  static uint32_t overlapping(const Boxes& boxes, const Box& box);
-  static Box lane(const Boxes& boxes, uint32_t k);
-  static Box all_lanes(const Boxes& boxes);
-  static void set_lane(Boxes& boxes, uint32_t k, const Box& box);
+  static Box3 all_lanes(const BoxLanes& boxes);
 
   void list_vertices(const Mesh& mesh);
   void list_faces(const Mesh& mesh, const Executor& executor);
@@ -77,7 +69,7 @@ class MeetingSearch {
   void build_level(size_t level, const Executor& executor);
   void search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) const;
   void search_leaf(const Mesh& mesh, uint32_t leaf, Pairs& pairs) const;
-  void search_leaves(const Mesh& mesh, uint32_t leaf, const Box& box, uint32_t other,
+  void search_leaves(const Mesh& mesh, uint32_t leaf, const Box3& box, uint32_t other,
                      Pairs& pairs) const;
   uint32_t index_of(uint32_t a, uint32_t b, uint32_t c) const;
 

@@ -1,6 +1,7 @@
 #include "engine/resolution.h"
 
 #include <algorithm>
+#include <array>
 
 #include "engine/annular.h"
 #include "engine/axial.h"
@@ -18,7 +19,10 @@ namespace plc {
 namespace {
 
 constexpr size_t kChunk = 128;        // queue entries per task
+constexpr uint32_t kSortedQueue = 16;  // queues of more than one in so many vertices are not sorted
 constexpr size_t kSerialQueue = 256;  // shorter queues are not worth tasks
+constexpr size_t kTrialRun = 512;     // candidates per run of trials
+constexpr size_t kFewTrials = 16;     // not worth tasks
 
 // Runs collect(chunk of the queue, out) over chunks and joins the results in order.
 template <typename Collect>
@@ -44,12 +48,12 @@ std::vector<Candidate> collect_in_order(const Executor& executor,
 }  // namespace
 
 Resolution::Resolution(Mesh& mesh, const Executor& executor, SimdTarget simd)
-    : mesh_(mesh), executor_(executor), simd_(simd), surroundings_(mesh, executor, simd) {}
+    : mesh_(mesh), executor_(executor), simd_(simd), surroundings_(mesh, executor, simd), trials_(mesh, hash_, executor) {}
 
 void Resolution::restart() {
   stamp_.clear();
   claim_.clear();
-  stamp_count_ = round_ = 0;
+  stamp_count_ = round_ = claims_ = 0;
   hash_valid_ = false;
   tiny_.start(mesh_);
 }
@@ -77,7 +81,16 @@ void Resolution::run(uint32_t iteration, OperationCounts& counts) {
 const std::vector<uint32_t>& Resolution::take_due(bool check_all) {
   due_.clear();
   list_due(0, mesh_.slots(), check_all);
-  search_around_due(check_all);
+  start_check(check_all);
+  surroundings_.search(due_, hash_);
+  return due_;
+}
+
+const std::vector<uint32_t>& Resolution::take_all() {
+  due_.clear();
+  list_due(0, mesh_.slots(), true);
+  start_check(true);
+  surroundings_.search_near(due_, hash_);
   return due_;
 }
 
@@ -86,7 +99,8 @@ const std::vector<uint32_t>& Resolution::take_due(const std::vector<uint32_t>& a
   for (const uint32_t block : awake) {
     list_due(block * kRingLanes, std::min((block + 1) * kRingLanes, mesh_.slots()), false);
   }
-  search_around_due(false);
+  start_check(false);
+  surroundings_.search(due_, hash_);
   return due_;
 }
 
@@ -104,7 +118,8 @@ bool Resolution::is_due(uint32_t v) {
   return false;
 }
 
-void Resolution::search_around_due(bool all) {
+// all: whether every vertex is due.
+void Resolution::start_check(bool all) {
   pair_queue_.clear();
   std::fill(mesh_.operations.begin(), mesh_.operations.end(), uint8_t{0});
   for (const uint32_t v : due_) {
@@ -112,7 +127,6 @@ void Resolution::search_around_due(bool all) {
     mesh_.idle[v] = 0;
   }
   update_hash(all);
-  surroundings_.search(due_, hash_);
 }
 
 // A vertex is due before it has moved farther than the slack, and is entered anew then.
@@ -163,12 +177,21 @@ uint32_t Resolution::stamp_queue(const std::vector<uint32_t>& queue) {
   return stamp_count_;
 }
 
+// Ascending, each living vertex once.
 void Resolution::unique(std::vector<uint32_t>& queue) {
-  std::sort(queue.begin(), queue.end());
-  queue.erase(std::unique(queue.begin(), queue.end()), queue.end());
-  std::erase_if(queue, [&](uint32_t v) { return !mesh_.alive(v); });
   stamp_.resize(mesh_.slots(), 0);
   claim_.resize(mesh_.slots(), 0);
+  if (queue.size() < mesh_.slots() / kSortedQueue) {
+    std::sort(queue.begin(), queue.end());
+    queue.erase(std::unique(queue.begin(), queue.end()), queue.end());
+    std::erase_if(queue, [&](uint32_t v) { return !mesh_.alive(v); });
+    return;
+  }
+  const uint32_t stamp = stamp_queue(queue);
+  queue.clear();
+  for (uint32_t v = 0; v < mesh_.slots(); ++v) {
+    if (stamp_[v] == stamp && mesh_.alive(v)) queue.push_back(v);
+  }
 }
 
 void Resolution::resolve_edges(OperationCounts& counts) {
@@ -240,27 +263,61 @@ std::vector<Candidate> Resolution::pair_candidates(const std::vector<uint32_t>& 
 
 void Resolution::apply_round(const std::vector<Candidate>& candidates, std::vector<uint32_t>& later,
                              OperationCounts& counts) {
-  ++round_;
-  for (const Candidate& candidate : candidates) {
-    if (!free_footprint(candidate)) {
-      later.push_back(candidate.edge.u);
-      later.push_back(candidate.edge.v);
-    } else if (!within_limit(candidate)) {
-      ++counts.deferred;
-    } else if (apply(candidate, counts)) {
-      for (const uint32_t v : footprint_) claim_[v] = round_;
-    } else {
-      // The vertices stay due: the next iteration tries again.
-      ++counts.refused;
-      mesh_.wake(candidate.edge.u);
-      mesh_.wake(candidate.edge.v);
+  round_ = ++claims_;
+  for (size_t begin = 0; begin < candidates.size(); begin += kTrialRun) {
+    const size_t end = std::min(begin + kTrialRun, candidates.size());
+    std::array<size_t, kTrialRun> trial;
+    try_candidates(candidates.data() + begin, end - begin, trial.data());
+    for (size_t i = begin; i < end; ++i) {
+      apply_in_turn(candidates[i], trial[i - begin], later, counts);
     }
   }
 }
 
+// Those whose turn it will be if all before them are admitted. trial: of each candidate.
+void Resolution::try_candidates(const Candidate* candidates, size_t count, size_t* trial) {
+  const uint32_t claim = ++claims_;
+  tried_.clear();
+  for (size_t i = 0; i < count; ++i) {
+    trial[i] = Trials::kUntried;
+    if (!Trials::can_try(mesh_, candidates[i]) || !free_footprint(candidates[i], claim)) continue;
+    for (const uint32_t v : footprint_) claim_[v] = claim;
+    trial[i] = tried_.size();
+    tried_.push_back(&candidates[i]);
+  }
+  if (tried_.size() < kFewTrials) {
+    tried_.clear();
+    std::fill(trial, trial + count, Trials::kUntried);
+  }
+  trials_.run(tried_);
+}
+
+void Resolution::apply_in_turn(const Candidate& candidate, size_t trial,
+                               std::vector<uint32_t>& later, OperationCounts& counts) {
+  if (!free_footprint(candidate, round_)) {
+    later.push_back(candidate.edge.u);
+    later.push_back(candidate.edge.v);
+    return;
+  }
+  if (!within_limit(candidate)) {
+    ++counts.deferred;
+    return;
+  }
+  trials_.begin(footprint_);
+  if (apply(candidate, trial, counts)) {
+    trials_.end();
+    for (const uint32_t v : footprint_) claim_[v] = round_;
+    return;
+  }
+  // The vertices stay due: the next iteration tries again.
+  ++counts.refused;
+  mesh_.wake(candidate.edge.u);
+  mesh_.wake(candidate.edge.v);
+}
+
 // Fills footprint_ with the closed rings of the vertices that the candidate changes or was found
-// from; false when an earlier candidate of the round has claimed one of them.
-bool Resolution::free_footprint(const Candidate& candidate) {
+// from; false when an earlier candidate has claimed one of them, by this claim or for the round.
+bool Resolution::free_footprint(const Candidate& candidate, uint32_t claim) {
   const Edge& e = candidate.edge;
   uint32_t corners[4] = {e.u, e.v, e.u, e.u};
   if (candidate.operation == Operation::kAnnular) corners[2] = e.a;
@@ -272,7 +329,7 @@ bool Resolution::free_footprint(const Candidate& candidate) {
   // What an earlier candidate of the round created has no claim slot yet, and is claimed, too.
   const auto add = [&](uint32_t v) {
     footprint_.push_back(v);
-    return v < claim_.size() && claim_[v] != round_;
+    return v < claim_.size() && claim_[v] != round_ && claim_[v] != claim;
   };
   for (const uint32_t c : corners) {
     if (!mesh_.alive(c) || !add(c)) return false;
@@ -298,7 +355,7 @@ bool Resolution::within_limit(const Candidate& candidate) {
 }
 
 // False when the embedding guard refused it; the mesh is as before then.
-bool Resolution::apply(const Candidate& candidate, OperationCounts& counts) {
+bool Resolution::apply(const Candidate& candidate, size_t trial, OperationCounts& counts) {
   const auto count = [](bool done, int64_t& counter) {
     counter += done ? 1 : 0;
     return done;
@@ -307,9 +364,9 @@ bool Resolution::apply(const Candidate& candidate, OperationCounts& counts) {
     case Operation::kAnnular:
       return count(apply_annular(candidate), counts.annular);
     case Operation::kDeletion:
-      return apply_deletion(candidate, counts);
+      return apply_deletion(candidate, trial, counts);
     case Operation::kInversion:
-      if (count(apply_inversion(candidate), counts.inversion)) return true;
+      if (count(apply_inversion(candidate, trial), counts.inversion)) return true;
       // A long edge that may not be inverted is split.
       return candidate.key < 0 && count(apply_creation(candidate), counts.creation);
     case Operation::kCreation:
@@ -324,6 +381,7 @@ void Resolution::involve(uint32_t v) {
   edge_queue_.push_back(v);
   pair_queue_.push_back(v);
   mesh_.calm[v] = 0;
+  trials_.changed(v);
 }
 
 void Resolution::moved(uint32_t v) {
@@ -336,15 +394,16 @@ bool Resolution::apply_creation(const Candidate& candidate) {
   return true;
 }
 
-bool Resolution::apply_inversion(const Candidate& candidate) {
+bool Resolution::apply_inversion(const Candidate& candidate, size_t trial) {
   const Edge& e = candidate.edge;
-  if (!guard_.embeds(mesh_, hash_, propose_inversion(mesh_, e))) return false;
+  if (trials_.admitted(candidate, trial) == Trials::kRefused) return false;
   invert_edge(mesh_, e);
   for (const uint32_t v : {e.u, e.v, e.a, e.b}) involve(v);
   return true;
 }
 
-bool Resolution::apply_deletion(const Candidate& candidate, OperationCounts& counts) {
+bool Resolution::apply_deletion(const Candidate& candidate, size_t trial,
+                                OperationCounts& counts) {
   const Edge& e = candidate.edge;
   if (mesh_.valence(e.a) == 3 || mesh_.valence(e.b) == 3) {
     // Exactly two common neighbours and an apex of valence 3: the component is a tetrahedron.
@@ -352,15 +411,13 @@ bool Resolution::apply_deletion(const Candidate& candidate, OperationCounts& cou
     ++counts.tetrahedron;
     return true;
   }
-  for (const Vec3 place : {midpoint(mesh_.at(e.u), mesh_.at(e.v)), mesh_.at(e.u), mesh_.at(e.v)}) {
-    if (!guard_.embeds(mesh_, hash_, propose_deletion(mesh_, e, place))) continue;
-    delete_edge(mesh_, e, place);
-    moved(e.u);
-    changed_.push_back(e.u);
-    ++counts.deletion;
-    return true;
-  }
-  return false;
+  const uint32_t place = trials_.admitted(candidate, trial);
+  if (place == Trials::kRefused) return false;
+  delete_edge(mesh_, e, Trials::deletion_place(mesh_, e, place));
+  moved(e.u);
+  changed_.push_back(e.u);
+  ++counts.deletion;
+  return true;
 }
 
 bool Resolution::apply_annular(const Candidate& candidate) {

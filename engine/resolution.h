@@ -9,6 +9,7 @@
 #include "engine/statistics.h"
 #include "engine/surroundings.h"
 #include "engine/tiny_components.h"
+#include "engine/trials.h"
 #include "kernels/simd.h"
 #include "pyramid/executor.h"
 
@@ -28,6 +29,8 @@ class Resolution {
   // in ascending order; their periods start anew. Also brings the hash up to date and searches what
   // is around those vertices.
   const std::vector<uint32_t>& take_due(bool check_all);
+  // All of them, for their constraints only: nothing has moved, or will be asked of the motion guard.
+  const std::vector<uint32_t>& take_all();
   // Of the vertices of these blocks of kRingLanes only, ascending: those of sleep.h.
   const std::vector<uint32_t>& take_due(const std::vector<uint32_t>& awake);
   SpatialHash& hash() { return hash_; }
@@ -41,7 +44,7 @@ class Resolution {
  private:
   void list_due(uint32_t begin, uint32_t end, bool all);
   bool is_due(uint32_t v);
-  void search_around_due(bool all);
+  void start_check(bool all);
   void update_hash(bool all);
   void queue_violated_edges();
   void resolve_edges(OperationCounts& counts);
@@ -51,11 +54,14 @@ class Resolution {
   // Applies what does not conflict; the vertices of what does are appended to `later`.
   void apply_round(const std::vector<Candidate>& candidates, std::vector<uint32_t>& later,
                    OperationCounts& counts);
-  bool free_footprint(const Candidate& candidate);
+  void try_candidates(const Candidate* candidates, size_t count, size_t* trial);
+  bool free_footprint(const Candidate& candidate, uint32_t claim);
   bool within_limit(const Candidate& candidate);
-  bool apply(const Candidate& candidate, OperationCounts& counts);
-  bool apply_inversion(const Candidate& candidate);
-  bool apply_deletion(const Candidate& candidate, OperationCounts& counts);
+  void apply_in_turn(const Candidate& candidate, size_t trial, std::vector<uint32_t>& later,
+                     OperationCounts& counts);
+  bool apply(const Candidate& candidate, size_t trial, OperationCounts& counts);
+  bool apply_inversion(const Candidate& candidate, size_t trial);
+  bool apply_deletion(const Candidate& candidate, size_t trial, OperationCounts& counts);
   bool apply_annular(const Candidate& candidate);
   bool apply_axial(const Candidate& candidate);
   bool apply_creation(const Candidate& candidate);
@@ -82,11 +88,14 @@ class Resolution {
   std::vector<uint32_t> pair_queue_;  // ... whose distance to non-neighbours is to be checked
   std::vector<uint32_t> changed_;     // where components may have become tiny
   std::vector<uint32_t> stamp_;       // by vertex: the queue it is in
-  std::vector<uint32_t> claim_;       // by vertex: the round that claimed it
+  std::vector<uint32_t> claim_;       // by vertex: the last claim
   std::vector<uint32_t> footprint_;   // of the candidate at hand
   EmbeddingGuard guard_;
+  Trials trials_;
+  std::vector<const Candidate*> tried_;  // of the run at hand
   uint32_t stamp_count_ = 0;
-  uint32_t round_ = 0;
+  uint32_t claims_ = 0;  // so far
+  uint32_t round_ = 0;   // the claim of what the round has applied
 };
 
 }  // namespace plc

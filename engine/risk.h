@@ -12,12 +12,58 @@
 //     at risk, too. Like the constraints, this is looked at when a vertex is due: of two vertices
 //     the later look counts, and since then neither has moved by more than kCheckPath.
 #pragma once
+#include <array>
+
 #include "engine/mesh.h"
 
 namespace plc {
 
-// False when planes that have kRiskGap room lie between the faces of v and those of w, but for
-// pairs of faces with a common vertex. v and w are not neighbours; ring is that of v.
-bool may_meet(const Mesh& mesh, uint32_t v, const Neighbors& ring, uint32_t w);
+// Stars of larger valence are not looked at closely: at risk. One bit per vertex of a star.
+inline constexpr uint32_t kRiskRing = 31;
+
+// A vertex, number 0, and its ring. Face k has the numbers 0, k + 1 and the next one's.
+struct RiskStar {
+  // Coordinates in streams, filled with those of number 0 up to whole vectors.
+  static constexpr uint32_t kLanes = 8;
+  using Stream = std::array<float, kRiskRing + 1>;
+
+  RiskStar(const Mesh& mesh, uint32_t v, const Neighbors& ring);
+  Vec3 at(uint32_t k) const { return {x[k], y[k], z[k]}; }
+  uint32_t next(uint32_t k) const { return k + 1 == faces ? 1 : k + 2; }
+  // Where all of them lie along an axis.
+  Stream along(Vec3 axis) const;
+  struct Extent {
+    float low, high;
+  };
+  Extent extent(const Stream& along) const;
+
+  uint32_t faces, padded;
+  std::array<uint32_t, kRiskRing + 1> id;
+  Stream x, y, z;
+};
+
+// What may meet the faces of one vertex.
+class Risk {
+ public:
+  // ring: that of v, up to kRiskRing.
+  Risk(const Mesh& mesh, uint32_t v, const Neighbors& ring);
+  // False when planes that have kRiskGap room lie between the faces of v and those of w, but for
+  // pairs of faces with a common vertex. v and w are not neighbours.
+  bool may_meet(uint32_t w) const;
+
+ private:
+  bool faces_may_meet(const RiskStar& of_w, const RiskStar::Stream& first,
+                      const RiskStar::Stream& second_v, const RiskStar::Stream& second_w,
+                      float second_room) const;
+
+  const Mesh& mesh_;
+  float gap_;
+  RiskStar star_;
+  // Along the normal of v.
+  Vec3 normal_;
+  RiskStar::Stream along_;
+  RiskStar::Extent extent_;
+  float room_;
+};
 
 }  // namespace plc

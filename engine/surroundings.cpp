@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "engine/blocks.h"
 #include "engine/constants.h"
@@ -17,10 +18,23 @@ constexpr size_t kTaskVertices = 256;
 // A group is what follows one another in one cube of this size, in delta: vertices are numbered
 // along a curve that fills such cubes one by one.
 constexpr float kGroupCube = 4;
+// No two unit vectors have this cosine.
+constexpr float kNone = -2;
 
 }  // namespace
 
 void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& hash) {
+  search(due, hash, kRiskReach * static_cast<float>(mesh_.delta), kRiskDot);
+}
+
+void Surroundings::search_near(const std::vector<uint32_t>& due, const SpatialHash& hash) {
+  search(due, hash, kMinApart * static_cast<float>(mesh_.delta), kNone);
+}
+
+// For what is nearer than kMinApart, and within reach and turned by `most`.
+void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& hash, float reach,
+                          float most) {
+  const Vec3 span{reach, reach, reach};
   const size_t tasks = block_count(due.size(), kTaskVertices);
   tasks_.resize(std::max(tasks_.size(), tasks));
   run_blocks(executor_, due.size(), kTaskVertices, [&](size_t index, size_t begin, size_t end) {
@@ -30,10 +44,8 @@ void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& h
     for (size_t i = begin; i < end;) {
       Vec3 low, high;
       const size_t count = group_size(due.data() + i, end - i, low, high);
-      const float reach = kRiskReach * static_cast<float>(mesh_.delta);
-      const Vec3 span{reach, reach, reach};
       hash.collect(mesh_, low - span, high + span, task.around);
-      search_group(due.data() + i, count, task);
+      search_group(due.data() + i, count, reach, most, task);
       i += count;
     }
   });
@@ -68,7 +80,8 @@ size_t Surroundings::group_size(const uint32_t* due, size_t count, Vec3& low, Ve
   return size;
 }
 
-void Surroundings::search_group(const uint32_t* due, size_t count, Task& task) const {
+void Surroundings::search_group(const uint32_t* due, size_t count, float reach, float most,
+                                Task& task) const {
   const auto around = static_cast<uint32_t>(task.around.ids.size());
   const size_t padded = block_count(around, kRingLanes) * kRingLanes;
   for (auto& stream : task.streams) stream.resize(std::max(stream.size(), padded));
@@ -82,21 +95,21 @@ void Surroundings::search_group(const uint32_t* due, size_t count, Task& task) c
   }
   const kernels::NearbyView view{x.data(),  y.data(),  z.data(), nx.data(),
                                  ny.data(), nz.data(), around};
-  const auto delta = static_cast<float>(mesh_.delta);
-  const float near = kMinApart * delta, far = kRiskReach * delta;
+  const float near = kMinApart * static_cast<float>(mesh_.delta);
   for (size_t i = 0; i < count; ++i) {
     const Vec3 p = mesh_.at(due[i]), n = mesh_.normal.at(due[i]);
     const uint32_t hits = kernels::near_or_turned(
-        simd_, view, {p.x, p.y, p.z, n.x, n.y, n.z, near * near, far * far, kRiskDot},
+        simd_, view, {p.x, p.y, p.z, n.x, n.y, n.z, near * near, reach * reach, most},
         task.hits.data());
-    judge(due[i], hits, task);
+    judge(due[i], hits, most, task);
   }
 }
 
-void Surroundings::judge(uint32_t v, uint32_t hits, Task& task) const {
+void Surroundings::judge(uint32_t v, uint32_t hits, float most, Task& task) const {
   const Vec3 p = mesh_.at(v), n = mesh_.normal.at(v);
   const float near = kMinApart * static_cast<float>(mesh_.delta);
   const Neighbors ring = mesh_.ring(v);
+  std::optional<Risk> around;  // when something asks for it
   bool risk = false;
   for (uint32_t k = 0; k < hits; ++k) {
     const uint32_t i = task.hits[k];
@@ -105,7 +118,9 @@ void Surroundings::judge(uint32_t v, uint32_t hits, Task& task) const {
     if (squared_distance(p, mesh_.at(w)) < near * near) {
       task.too_near.push_back({std::min(v, w), std::max(v, w)});
     }
-    if (dot(n, mesh_.normal.at(w)) <= kRiskDot && may_meet(mesh_, v, ring, w)) {
+    if (dot(n, mesh_.normal.at(w)) > most) continue;
+    if (!around && ring.size() <= kRiskRing) around.emplace(mesh_, v, ring);
+    if (!around || around->may_meet(w)) {
       task.at_risk.push_back(w);
       risk = true;
     }

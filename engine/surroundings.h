@@ -1,5 +1,5 @@
-// What lies around the vertices that are due for a check: one search for constraint (3) and for the
-// motion guard.
+// What lies around the vertices that are due for a check: one search for constraint (3) and, where
+// vertices have moved, for the motion guard.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -30,11 +30,14 @@ class Surroundings {
 
   // due: ascending. The hash holds every living vertex. Normals are those of mesh.normal.
   void search(const std::vector<uint32_t>& due, const SpatialHash& hash);
+  // Only what is too near, for constraint (3): a smaller box, and no normals.
+  void search_near(const std::vector<uint32_t>& due, const SpatialHash& hash);
 
   // Of the last search: the non-neighbours u < w, one of them due, that are nearer than (3) allows;
   // sorted.
   const std::vector<VertexPair>& too_near() const { return too_near_; }
   // Of the last search: the vertices at risk (risk.h), one of each two at least due; some twice.
+  // None after search_near().
   const std::vector<uint32_t>& at_risk() const { return at_risk_; }
 
  private:
@@ -46,8 +49,9 @@ class Surroundings {
     std::vector<float> streams[6];  // their places and normals
     std::vector<uint32_t> hits;
   };
-  void search_group(const uint32_t* due, size_t count, Task& task) const;
-  void judge(uint32_t v, uint32_t hits, Task& task) const;
+  void search(const std::vector<uint32_t>& due, const SpatialHash& hash, float reach, float most);
+  void search_group(const uint32_t* due, size_t count, float reach, float most, Task& task) const;
+  void judge(uint32_t v, uint32_t hits, float most, Task& task) const;
   size_t group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high) const;
 
   const Mesh& mesh_;

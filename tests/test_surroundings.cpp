@@ -47,7 +47,7 @@ Found expected(const Mesh& mesh, const std::vector<uint32_t>& due) {
       if (w == v || !mesh.alive(w) || ring.contains(w) || squared > far * far) continue;
       if (squared < near * near) found.too_near.push_back({std::min(v, w), std::max(v, w)});
       const bool turned = plc::dot(mesh.normal.at(v), mesh.normal.at(w)) <= plc::kRiskDot;
-      if (turned && plc::may_meet(mesh, v, ring, w)) found.at_risk.insert({v, w});
+      if (turned && plc::Risk(mesh, v, ring).may_meet(w)) found.at_risk.insert({v, w});
     }
   }
   std::sort(found.too_near.begin(), found.too_near.end());
@@ -91,6 +91,18 @@ TEST_CASE("what is too near and what is at risk is found around all, many and fe
   }
   CHECK(searched(around, mesh, {}).too_near.empty());
   CHECK(searched(around, mesh, {}).at_risk.empty());
+}
+
+TEST_CASE("a search for what is too near finds that alone", "[surroundings]") {
+  Mesh mesh;
+  fill_scene(mesh);
+  const auto due = every(mesh, 3);
+  plc::SpatialHash hash;
+  hash.build(mesh, plc::kHashCell * static_cast<float>(mesh.delta), samples::kSerial);
+  Surroundings around(mesh, samples::kSerial, plc::best_simd_target());
+  around.search_near(due, hash);
+  CHECK(around.too_near() == expected(mesh, due).too_near);
+  CHECK(around.at_risk().empty());
 }
 
 TEST_CASE("deleted vertices are near nothing", "[surroundings]") {
