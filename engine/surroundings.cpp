@@ -17,7 +17,7 @@ namespace {
 constexpr size_t kTaskVertices = 256;
 // A group is what follows one another in one cube of this size, in delta: vertices are numbered
 // along a curve that fills such cubes one by one.
-constexpr float kGroupCube = 4;
+constexpr float kGroupCube = 8;
 // No two unit vectors have this cosine.
 constexpr float kNone = -2;
 

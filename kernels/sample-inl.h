@@ -126,6 +126,15 @@ HWY_INLINE Floats sample_padded(const ImageView& image, const Cells& x, const Ce
                                 const Cells& z) {
   const FloatTag d;
   const IntTag di;
+  // On the way through the padding: between equal values lies the same value.
+  const int32_t pad = image.form.pad;
+  const auto beyond = [&](Ints index, int32_t dim) HWY_ATTR {
+    return hn::Or(hn::Gt(hn::Set(di, pad - 1), index), hn::Gt(index, hn::Set(di, dim - pad - 1)));
+  };
+  if (hn::AllTrue(di, hn::Or(hn::Or(beyond(x.index, image.dims[0]), beyond(y.index, image.dims[1])),
+                             beyond(z.index, image.dims[2])))) {
+    return hn::Set(d, image.form.pad_value);
+  }
   alignas(64) int32_t at[3][kLanes];
   alignas(64) float corners[8 * kLanes];
   hn::Store(x.index, di, at[0]);
