@@ -20,6 +20,44 @@ bool all_calm(const Mesh& mesh, uint32_t block) {
   return least >= kCalmPeriod;
 }
 
+struct Limits {
+  float along;          // of calm vertices: less than this along the normal
+  float slide_squared;  // ... and in all
+  float steps;          // of stir, per mesh unit
+};
+
+// Brings calm and stir of a block's vertices up to date. Returns those that wake their neighbours,
+// as bits. Loops over whole blocks without branches, which compilers make vector code of.
+uint32_t observe_block(Mesh& mesh, uint32_t first, const Limits& limits) {
+  const Streams3 &move = mesh.displacement, &normal = mesh.normal;
+  const float *dx = &move.x[first], *dy = &move.y[first], *dz = &move.z[first];
+  const float *nx = &normal.x[first], *ny = &normal.y[first], *nz = &normal.z[first];
+  int32_t calm[kRingLanes], stir[kRingLanes];
+  for (uint32_t k = 0; k < kRingLanes; ++k) {
+    const float along = std::abs(dx[k] * nx[k] + dy[k] * ny[k] + dz[k] * nz[k]);
+    const float squared = dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k];
+    calm[k] = static_cast<int32_t>(along < limits.along) &
+              static_cast<int32_t>(squared < limits.slide_squared);
+    // Whole steps only: what moves less than one in an iteration wakes nobody.
+    stir[k] = static_cast<int32_t>(std::min(along * limits.steps, 256.0F));
+  }
+  uint8_t* const calm_for = &mesh.calm[first];
+  uint8_t* const stirred = &mesh.stir[first];
+  int32_t most = 0;
+  for (uint32_t k = 0; k < kRingLanes; ++k) {
+    calm_for[k] = static_cast<uint8_t>(calm[k] * std::min(calm_for[k] + 1, 255));
+    stir[k] += stirred[k];
+    most = std::max(most, stir[k]);
+  }
+  uint32_t wakers = 0;
+  for (uint32_t k = 0; k < kRingLanes; ++k) {
+    stirred[k] = stir[k] >= 256 ? uint8_t{0} : static_cast<uint8_t>(stir[k]);
+  }
+  if (most < 256) return 0;
+  for (uint32_t k = 0; k < kRingLanes; ++k) wakers |= static_cast<uint32_t>(stir[k] >= 256) << k;
+  return wakers;
+}
+
 }  // namespace
 
 void Sleep::choose(bool all) {
@@ -75,34 +113,16 @@ void Sleep::observe() {
   if (calm_speed_ == 0) return;
   const float along = calm_speed_ * static_cast<float>(mesh_.delta);
   const float slide = kCalmSlide * along;
-  const float steps = 256 / (kWakeMove * static_cast<float>(mesh_.delta));
+  const Limits limits{along, slide * slide, 256 / (kWakeMove * static_cast<float>(mesh_.delta))};
   found_.resize(std::max(found_.size(), block_count(awake_.size(), kTaskBlocks)));
   run_blocks(executor_, awake_.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {
     auto& wakers = found_[task];
     wakers.clear();
     for (size_t i = begin; i < end; ++i) {
       const uint32_t first = awake_[i] * kRingLanes;
-      // Loops without branches over whole blocks, which compilers make vector code of.
-      int32_t calm[kRingLanes], stir[kRingLanes];
-      for (uint32_t lane = 0; lane < kRingLanes; ++lane) {
-        const Vec3 moved = mesh_.displacement.at(first + lane);
-        const float normal = std::abs(dot(moved, mesh_.normal.at(first + lane)));
-        calm[lane] = static_cast<int32_t>(normal < along) &
-                     static_cast<int32_t>(dot(moved, moved) < slide * slide);
-        // Whole steps only: what moves less than one in an iteration wakes nobody.
-        stir[lane] = static_cast<int32_t>(std::min(normal * steps, 256.0F));
-      }
-      int32_t most = 0;
-      for (uint32_t lane = 0; lane < kRingLanes; ++lane) {
-        const uint32_t v = first + lane;
-        mesh_.calm[v] = static_cast<uint8_t>(calm[lane] * std::min(mesh_.calm[v] + 1, 255));
-        stir[lane] += mesh_.stir[v];
-        most = std::max(most, stir[lane]);
-        mesh_.stir[v] = stir[lane] >= 256 ? uint8_t{0} : static_cast<uint8_t>(stir[lane]);
-      }
-      if (most < 256) continue;
-      for (uint32_t lane = 0; lane < kRingLanes; ++lane) {
-        if (stir[lane] >= 256) wakers.push_back(first + lane);
+      uint32_t stirred = observe_block(mesh_, first, limits);
+      for (; stirred != 0; stirred &= stirred - 1) {
+        wakers.push_back(first + static_cast<uint32_t>(__builtin_ctz(stirred)));
       }
     }
   });
