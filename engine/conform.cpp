@@ -100,8 +100,9 @@ double longest_edge(const Mesh& mesh) {
   return std::sqrt(static_cast<double>(longest));
 }
 
-void settle(Mesh& mesh, Resolution& resolution, OperationCounts& counts) {
-  mesh.renumber(morton_order(mesh));
+void settle(Mesh& mesh, const Executor& executor, Resolution& resolution,
+            OperationCounts& counts) {
+  mesh.renumber(morton_order(mesh, executor), executor);
   resolution.restart();
   for (int pass = 0; pass < kConformPasses; ++pass) {
     const int64_t before = applied(counts);
@@ -111,8 +112,8 @@ void settle(Mesh& mesh, Resolution& resolution, OperationCounts& counts) {
   }
 }
 
-void put_at_rest(Mesh& mesh) {
-  mesh.renumber(morton_order(mesh));
+void put_at_rest(Mesh& mesh, const Executor& executor) {
+  mesh.renumber(morton_order(mesh, executor), executor);
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     mesh.wake(v);
     mesh.velocity.set(v, {});
@@ -140,12 +141,12 @@ Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget si
   double step = longest_edge(mesh) / static_cast<double>(kMaxEdge) * kRoom;
   while (step < delta && mesh.vertex_count() != 0) {
     mesh.delta = step;
-    settle(mesh, resolution, counts);
+    settle(mesh, schedule, resolution, counts);
     step *= kRefinement;
   }
   mesh.delta = delta;
-  settle(mesh, resolution, counts);
-  put_at_rest(mesh);
+  settle(mesh, schedule, resolution, counts);
+  put_at_rest(mesh, schedule);
   if (mesh.vertex_count() == 0) {
     return {ErrorCode::kInvalidData,
             "nothing is left of the surface at this resolution: it is too small or too thin"};

@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <utility>
+#include <vector>
+
+#include "engine/blocks.h"
 
 namespace plc {
 
@@ -18,12 +22,6 @@ void permute(Buffer<T>& buffer, const std::vector<uint32_t>& order) {
   Buffer<T> moved(buffer.size());
   for (size_t i = 0; i < order.size(); ++i) moved[i] = buffer[order[i]];
   buffer.swap(moved);
-}
-
-void permute(Streams3& s, const std::vector<uint32_t>& order) {
-  permute(s.x, order);
-  permute(s.y, order);
-  permute(s.z, order);
 }
 
 }  // namespace
@@ -204,22 +202,19 @@ void Mesh::free_tail(uint32_t offset, uint32_t length) {
   free_tails_[tail_class(length)].push_back(offset);
 }
 
-void Mesh::renumber(const std::vector<uint32_t>& order) {
-  std::vector<uint32_t> new_id(slots_);
-  for (uint32_t i = 0; i < order.size(); ++i) new_id[order[i]] = i;
+void Mesh::renumber(const std::vector<uint32_t>& order, const Executor& executor) {
   Mesh to;
   to.delta = delta;
   to.grow(static_cast<uint32_t>(order.size()));
-  for (uint32_t i = 0; i < order.size(); ++i) {
-    Neighbors r = ring(order[i]);
-    for (uint32_t k = 0; k < r.size(); ++k) r[k] = new_id[r[k]];
-    to.set_ring(i, r);
-  }
+  carry_rings(order, to, executor);
   const size_t n = to.valence_.size();
+  std::vector<std::function<void()>> streams;
   const auto carry = [&](auto& target, auto& source) {
-    permute(source, order);
-    source.resize(n);
-    target.swap(source);
+    streams.emplace_back([&target, &source, &order, n] {
+      permute(source, order);
+      source.resize(n);
+      target.swap(source);
+    });
   };
   carry(to.packed, packed);
   carry(to.path, path);
@@ -230,18 +225,44 @@ void Mesh::renumber(const std::vector<uint32_t>& order) {
   carry(to.operations, operations);
   carry(to.cut_id, cut_id);
   carry(to.cut_iteration, cut_iteration);
-  const auto carry3 = [&](Streams3& target, Streams3& source) {
-    permute(source, order);
-    std::swap(target, source);
-  };
-  carry3(to.velocity, velocity);
-  carry3(to.normal, normal);
-  carry3(to.displacement, displacement);
-  to.velocity.resize(n);
-  to.normal.resize(n);
-  to.displacement.resize(n);
+  for (const auto& [target, source] : {std::pair{&to.velocity, &velocity},
+                                       std::pair{&to.normal, &normal},
+                                       std::pair{&to.displacement, &displacement}}) {
+    carry(target->x, source->x);
+    carry(target->y, source->y);
+    carry(target->z, source->z);
+  }
+  executor.run(streams.size(), [&](size_t stream) { streams[stream](); });
   *this = std::move(to);
   refresh_view();
+}
+
+// `to` is new and has a slot for each vertex of `order`.
+void Mesh::carry_rings(const std::vector<uint32_t>& order, Mesh& to,
+                       const Executor& executor) const {
+  constexpr size_t kBlock = 4096;
+  std::vector<uint32_t> new_id(slots_);
+  run_blocks(executor, order.size(), kBlock, [&](size_t, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) new_id[order[i]] = static_cast<uint32_t>(i);
+  });
+  run_blocks(executor, order.size(), kBlock, [&](size_t, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const uint32_t d = valence_[order[i]];
+      if (d > kRingSlots) continue;
+      const auto v = static_cast<uint32_t>(i);
+      to.valence_[v] = static_cast<uint16_t>(d);
+      for (uint32_t k = 0; k < d; ++k) to.column(v, k) = new_id[neighbor(order[i], k)];
+    }
+  });
+  to.alive_ = static_cast<uint32_t>(order.size());
+  // Tails share an arena.
+  for (uint32_t i = 0; i < order.size(); ++i) {
+    if (valence_[order[i]] <= kRingSlots) continue;
+    Neighbors r = ring(order[i]);
+    for (uint32_t k = 0; k < r.size(); ++k) r[k] = new_id[r[k]];
+    --to.alive_;
+    to.set_ring(i, r);
+  }
 }
 
 std::vector<uint32_t> Mesh::faces() const {

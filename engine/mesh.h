@@ -8,6 +8,7 @@
 #include "engine/vec3.h"
 #include "kernels/ring.h"
 #include "pyramid/buffer.h"
+#include "pyramid/executor.h"
 
 namespace plc {
 
@@ -103,13 +104,14 @@ class Mesh {
   const std::vector<uint32_t>& free_ids() const { return free_; }
   // New ids: new id = rank of v in `order`, which lists every living vertex once. Nothing but the
   // ids changes.
-  void renumber(const std::vector<uint32_t>& order);
+  void renumber(const std::vector<uint32_t>& order, const Executor& executor = SerialExecutor());
   // Triples (v, r[i], r[i+1]) with v the smallest id, in order of v, then of the ring.
   std::vector<uint32_t> faces() const;
   uint64_t bytes() const;
 
  private:
   void grow(uint32_t slots);
+  void carry_rings(const std::vector<uint32_t>& order, Mesh& to, const Executor& executor) const;
   void set_valence(uint32_t v, uint32_t valence);
   uint32_t& column(uint32_t v, uint32_t k) {
     return columns_[(v / kRingLanes * kRingColumns + k) * kRingLanes + v % kRingLanes];

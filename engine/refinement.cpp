@@ -1,9 +1,11 @@
 #include "engine/refinement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include "engine/blocks.h"
 #include "engine/constants.h"
 #include "engine/edge.h"
 #include "engine/inversion.h"
@@ -29,6 +31,30 @@ uint64_t morton_key(Vec3 p, double delta) {
     return static_cast<uint64_t>(std::clamp(std::floor(x / delta) + kMiddle, 0.0, 2 * kMiddle - 1));
   };
   return spread(cell(p.x)) | spread(cell(p.y)) << 1 | spread(cell(p.z)) << 2;
+}
+
+struct Keyed {
+  uint64_t key;
+  uint32_t id;
+};
+
+// A stable radix sort: those of equal keys keep their order.
+void sort_by_key(std::vector<Keyed>& keyed) {
+  constexpr uint32_t kDigit = 11, kDigits = 6;
+  constexpr size_t kValues = size_t{1} << kDigit;
+  const auto digit = [](uint64_t key, uint32_t d) { return key >> (kDigit * d) & (kValues - 1); };
+  std::vector<std::array<uint32_t, kValues>> count(kDigits);
+  for (const Keyed& k : keyed) {
+    for (uint32_t d = 0; d < kDigits; ++d) ++count[d][digit(k.key, d)];
+  }
+  std::vector<Keyed> sorted(keyed.size());
+  for (uint32_t d = 0; d < kDigits; ++d) {
+    if (keyed.empty() || count[d][digit(keyed[0].key, d)] == keyed.size()) continue;  // all alike
+    uint32_t next = 0;
+    for (uint32_t& c : count[d]) next += std::exchange(c, next);
+    for (const Keyed& k : keyed) sorted[count[d][digit(k.key, d)]++] = k;
+    keyed.swap(sorted);
+  }
 }
 
 // Slot k of v stands for the face (v, slot k, slot k + 1). face_of[first[v] + k] is the vertex that
@@ -99,16 +125,18 @@ void undo_where_meeting(Mesh& mesh, const std::vector<uint8_t>& of_face, const E
 
 }  // namespace
 
-std::vector<uint32_t> morton_order(const Mesh& mesh) {
-  std::vector<std::pair<uint64_t, uint32_t>> keys;
-  keys.reserve(mesh.vertex_count());
-  for (uint32_t v = 0; v < mesh.slots(); ++v) {
-    if (mesh.alive(v)) keys.emplace_back(morton_key(mesh.at(v), mesh.delta), v);
-  }
-  std::sort(keys.begin(), keys.end());
-  std::vector<uint32_t> order;
-  order.reserve(keys.size());
-  for (const auto& key : keys) order.push_back(key.second);
+std::vector<uint32_t> morton_order(const Mesh& mesh, const Executor& executor) {
+  constexpr size_t kBlock = 4096;
+  const std::vector<uint32_t> living = living_order(mesh);
+  std::vector<Keyed> keyed(living.size());
+  run_blocks(executor, living.size(), kBlock, [&](size_t, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      keyed[i] = {morton_key(mesh.at(living[i]), mesh.delta), living[i]};
+    }
+  });
+  sort_by_key(keyed);
+  std::vector<uint32_t> order(living.size());
+  for (size_t i = 0; i < order.size(); ++i) order[i] = keyed[i].id;
   return order;
 }
 
@@ -123,7 +151,7 @@ std::vector<uint32_t> living_order(const Mesh& mesh) {
 
 void refine(Mesh& mesh, const Executor& executor, bool renumbering) {
   // Old vertices get the low ids, without gaps, so that new and old are told apart by id.
-  if (!mesh.in_order()) mesh.renumber(renumbering ? morton_order(mesh) : living_order(mesh));
+  if (!mesh.in_order()) mesh.renumber(renumbering ? morton_order(mesh, executor) : living_order(mesh), executor);
   const uint32_t old_slots = mesh.slots();
   mesh.reserve(old_slots * 3);
   const FaceVertices faces = create_face_vertices(mesh, old_slots);
@@ -152,10 +180,10 @@ void refine(Mesh& mesh, const Executor& executor, bool renumbering) {
   }
   mesh.delta /= kRefinement;
   // Searches for faces that meet are fast where ids follow space.
-  const auto order = renumbering ? morton_order(mesh) : living_order(mesh);
+  const auto order = renumbering ? morton_order(mesh, executor) : living_order(mesh);
   std::vector<uint8_t> of_face(order.size());
   for (size_t i = 0; i < order.size(); ++i) of_face[i] = order[i] >= old_slots ? 1 : 0;
-  mesh.renumber(order);
+  mesh.renumber(order, executor);
   undo_where_meeting(mesh, of_face, executor);
   for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.wake(v);
 }

@@ -13,7 +13,7 @@ namespace plc {
 void refine(Mesh& mesh, const Executor& executor, bool renumbering = true);
 
 // The living vertices along a Morton curve of cells of delta, ties by id.
-std::vector<uint32_t> morton_order(const Mesh& mesh);
+std::vector<uint32_t> morton_order(const Mesh& mesh, const Executor& executor = SerialExecutor());
 // ... in the order of their ids.
 std::vector<uint32_t> living_order(const Mesh& mesh);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "engine/annular.h"
 #include "engine/axial.h"
@@ -18,6 +19,7 @@ namespace plc {
 
 namespace {
 
+constexpr size_t kTaskBlocks = kGrain / kRingLanes;
 constexpr size_t kChunk = 128;        // queue entries per task
 constexpr uint32_t kSortedQueue = 16;  // queues of more than one in so many vertices are not sorted
 constexpr size_t kSerialQueue = 256;  // shorter queues are not worth tasks
@@ -79,43 +81,68 @@ void Resolution::run(uint32_t iteration, OperationCounts& counts) {
 }
 
 const std::vector<uint32_t>& Resolution::take_due(bool check_all) {
-  due_.clear();
-  list_due(0, mesh_.slots(), check_all);
+  list_due(all_blocks(), check_all);
   start_check(check_all);
   surroundings_.search(due_, hash_);
   return due_;
 }
 
-const std::vector<uint32_t>& Resolution::take_all() {
-  due_.clear();
-  list_due(0, mesh_.slots(), true);
-  start_check(true);
-  surroundings_.search_near(due_, hash_);
-  return due_;
-}
-
 const std::vector<uint32_t>& Resolution::take_due(const std::vector<uint32_t>& awake) {
-  due_.clear();
-  for (const uint32_t block : awake) {
-    list_due(block * kRingLanes, std::min((block + 1) * kRingLanes, mesh_.slots()), false);
-  }
+  list_due(awake, false);
   start_check(false);
   surroundings_.search(due_, hash_);
   return due_;
 }
 
-void Resolution::list_due(uint32_t begin, uint32_t end, bool all) {
-  for (uint32_t v = begin; v < end; ++v) {
-    if ((all || is_due(v)) && mesh_.alive(v)) due_.push_back(v);
+const std::vector<uint32_t>& Resolution::take_all() {
+  list_due(all_blocks(), true);
+  start_check(true);
+  surroundings_.search_near(due_, hash_);
+  return due_;
+}
+
+const std::vector<uint32_t>& Resolution::all_blocks() {
+  blocks_.resize(mesh_.padded() / kRingLanes);
+  std::iota(blocks_.begin(), blocks_.end(), 0U);
+  return blocks_;
+}
+
+void Resolution::list_due(const std::vector<uint32_t>& blocks, bool all) {
+  const size_t tasks = block_count(blocks.size(), kTaskBlocks);
+  found_.resize(std::max(found_.size(), tasks));
+  run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {
+    found_[task].clear();
+    for (size_t i = begin; i < end; ++i) {
+      const uint32_t first = blocks[i] * kRingLanes;
+      for (uint32_t lanes = due_lanes(first, all); lanes != 0; lanes &= lanes - 1) {
+        found_[task].push_back(first + static_cast<uint32_t>(__builtin_ctz(lanes)));
+      }
+    }
+  });
+  due_.clear();
+  for (size_t task = 0; task < tasks; ++task) {
+    due_.insert(due_.end(), found_[task].begin(), found_[task].end());
   }
 }
 
-// By the slow-vertex rule; counts its period. What sleeps, or might, has none.
-bool Resolution::is_due(uint32_t v) {
-  const float far = kCheckPath * static_cast<float>(mesh_.delta);
-  if (mesh_.path[v] >= far || mesh_.idle[v] >= kCheckPeriod) return true;
-  if (mesh_.calm[v] < kCalmPeriod) ++mesh_.idle[v];
-  return false;
+// Of a block, those that are due by the slow-vertex rule, as bits; counts the periods of the
+// others. What sleeps, or might, has none.
+uint32_t Resolution::due_lanes(uint32_t first, bool all) {
+  const float far = all ? 0 : kCheckPath * static_cast<float>(mesh_.delta);
+  const float* const path = &mesh_.path[first];
+  const uint8_t* const calm = &mesh_.calm[first];
+  uint8_t* const idle = &mesh_.idle[first];
+  const uint16_t* const valence = mesh_.rings().valence + first;
+  int32_t due[kRingLanes];
+  for (uint32_t k = 0; k < kRingLanes; ++k) {
+    due[k] = static_cast<int32_t>(path[k] >= far) | static_cast<int32_t>(idle[k] >= kCheckPeriod);
+    const int32_t counts = static_cast<int32_t>(calm[k] < kCalmPeriod) & ~due[k];
+    idle[k] = static_cast<uint8_t>(idle[k] + (counts & 1));
+    due[k] &= static_cast<int32_t>(valence[k] != 0);
+  }
+  uint32_t lanes = 0;
+  for (uint32_t k = 0; k < kRingLanes; ++k) lanes |= static_cast<uint32_t>(due[k]) << k;
+  return lanes;
 }
 
 // all: whether every vertex is due.
@@ -138,7 +165,7 @@ void Resolution::update_hash(bool all) {
     hash_valid_ = true;
     return;
   }
-  for (const uint32_t v : due_) hash_.insert(v, mesh_.at(v));
+  hash_.insert(mesh_, due_, executor_);
 }
 
 void Resolution::add_due(const std::vector<uint32_t>& vertices) {

@@ -42,8 +42,9 @@ class Resolution {
   void run(uint32_t iteration, OperationCounts& counts);
 
  private:
-  void list_due(uint32_t begin, uint32_t end, bool all);
-  bool is_due(uint32_t v);
+  const std::vector<uint32_t>& all_blocks();
+  void list_due(const std::vector<uint32_t>& blocks, bool all);
+  uint32_t due_lanes(uint32_t first, bool all);
   void start_check(bool all);
   void update_hash(bool all);
   void queue_violated_edges();
@@ -83,6 +84,7 @@ class Resolution {
 
   Buffer<uint8_t> flags_;             // edge violations by the kernel
   std::vector<uint32_t> due_;         // of take_due()
+  std::vector<std::vector<uint32_t>> found_;  // per task
   std::vector<uint32_t> blocks_;      // of kRingLanes vertices, with one that is due
   std::vector<uint32_t> edge_queue_;  // vertices whose edges are to be checked
   std::vector<uint32_t> pair_queue_;  // ... whose distance to non-neighbours is to be checked

@@ -86,7 +86,26 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
 
 void SpatialHash::insert(uint32_t v, Vec3 p) {
   const uint32_t b = bucket(p);
-  if (has_entry(b, v)) return;
+  if (!has_entry(b, v)) enter(v, b);
+}
+
+void SpatialHash::insert(const Mesh& mesh, const std::vector<uint32_t>& ids,
+                         const Executor& executor) {
+  constexpr size_t kTask = 512;
+  const size_t tasks = block_count(ids.size(), kTask);
+  missing_.resize(std::max(missing_.size(), tasks));
+  run_blocks(executor, ids.size(), kTask, [&](size_t task, size_t begin, size_t end) {
+    missing_[task].clear();
+    for (size_t i = begin; i < end; ++i) {
+      if (!has_entry(bucket(mesh.at(ids[i])), ids[i])) missing_[task].push_back(ids[i]);
+    }
+  });
+  for (size_t task = 0; task < tasks; ++task) {
+    for (const uint32_t v : missing_[task]) enter(v, bucket(mesh.at(v)));
+  }
+}
+
+void SpatialHash::enter(uint32_t v, uint32_t b) {
   const uint32_t list = b >> kLateShift;
   late_.push_back({v, late_head_[list]});
   late_head_[list] = static_cast<uint32_t>(late_.size() - 1);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "engine/mesh.h"
 #include "pyramid/buffer.h"
@@ -29,6 +30,8 @@ class SpatialHash {
   // A vertex that was created since, or has moved by more than the slack. Where queries would find
   // it in any case, nothing.
   void insert(uint32_t v, Vec3 p);
+  // Several of them. No vertex is listed twice.
+  void insert(const Mesh& mesh, const std::vector<uint32_t>& ids, const Executor& executor);
   // Entries that insert() has made since build().
   size_t inserted() const { return late_.size(); }
 
@@ -60,6 +63,7 @@ class SpatialHash {
   }
   // Whether queries of bucket b come across v.
   bool has_entry(uint32_t b, uint32_t v) const;
+  void enter(uint32_t v, uint32_t b);
   uint32_t bucket(Vec3 p) const {
     return (static_cast<uint32_t>(cell_of(p.x)) + row(cell_of(p.y), cell_of(p.z))) & mask_;
   }
@@ -85,6 +89,7 @@ class SpatialHash {
   };
   Buffer<Placed> placed_;
   Buffer<uint32_t> part_start_;
+  std::vector<std::vector<uint32_t>> missing_;  // per task: those that insert() has to enter
 };
 
 template <typename Visit>
