@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <numeric>
 
 #include "engine/annular.h"
@@ -54,8 +55,7 @@ Resolution::Resolution(Mesh& mesh, const Executor& executor, SimdTarget simd)
 
 void Resolution::restart() {
   stamp_.clear();
-  claim_.clear();
-  stamp_count_ = round_ = claims_ = 0;
+  stamps_ = round_ = 0;
   hash_valid_ = false;
   tiny_.start(mesh_);
 }
@@ -64,7 +64,6 @@ void Resolution::run(uint32_t iteration, OperationCounts& counts) {
   iteration_ = iteration;
   changed_.clear();
   stamp_.resize(mesh_.slots(), 0);
-  claim_.resize(mesh_.slots(), 0);
   queue_violated_edges();
   for (int pass = 0; pass < kMaxAxialPasses; ++pass) {
     resolve_edges(counts);
@@ -108,26 +107,29 @@ const std::vector<uint32_t>& Resolution::all_blocks() {
 }
 
 void Resolution::list_due(const std::vector<uint32_t>& blocks, bool all) {
-  const size_t tasks = block_count(blocks.size(), kTaskBlocks);
-  found_.resize(std::max(found_.size(), tasks));
+  lanes_.resize(blocks.size());
+  first_due_.assign(block_count(blocks.size(), kTaskBlocks) + 1, 0);
   run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {
-    found_[task].clear();
     for (size_t i = begin; i < end; ++i) {
-      const uint32_t first = blocks[i] * kRingLanes;
-      for (uint32_t lanes = due_lanes(first, all); lanes != 0; lanes &= lanes - 1) {
-        found_[task].push_back(first + static_cast<uint32_t>(__builtin_ctz(lanes)));
+      lanes_[i] = due_lanes(blocks[i] * kRingLanes, all);
+      first_due_[task + 1] += static_cast<uint32_t>(std::popcount(lanes_[i]));
+    }
+  });
+  std::partial_sum(first_due_.begin(), first_due_.end(), first_due_.begin());
+  due_.resize(first_due_.back());
+  run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {
+    uint32_t* next = due_.data() + first_due_[task];
+    for (size_t i = begin; i < end; ++i) {
+      for (uint32_t lanes = lanes_[i]; lanes != 0; lanes &= lanes - 1) {
+        *next++ = blocks[i] * kRingLanes + static_cast<uint32_t>(std::countr_zero(lanes));
       }
     }
   });
-  due_.clear();
-  for (size_t task = 0; task < tasks; ++task) {
-    due_.insert(due_.end(), found_[task].begin(), found_[task].end());
-  }
 }
 
 // Of a block, those that are due by the slow-vertex rule, as bits; counts the periods of the
 // others. What sleeps, or might, has none.
-uint32_t Resolution::due_lanes(uint32_t first, bool all) {
+uint16_t Resolution::due_lanes(uint32_t first, bool all) {
   const float far = all ? 0 : kCheckPath * static_cast<float>(mesh_.delta);
   const float* const path = &mesh_.path[first];
   const uint8_t* const calm = &mesh_.calm[first];
@@ -142,7 +144,7 @@ uint32_t Resolution::due_lanes(uint32_t first, bool all) {
   }
   uint32_t lanes = 0;
   for (uint32_t k = 0; k < kRingLanes; ++k) lanes |= static_cast<uint32_t>(due[k]) << k;
-  return lanes;
+  return static_cast<uint16_t>(lanes);
 }
 
 // all: whether every vertex is due.
@@ -176,14 +178,15 @@ void Resolution::queue_violated_edges() {
   edge_queue_.clear();
   const auto delta = static_cast<float>(mesh_.delta);
   flags_.resize_uninitialized(mesh_.padded());
-  if (!pair_queue_.empty()) {
-    due_.insert(due_.end(), pair_queue_.begin(), pair_queue_.end());
-    std::sort(due_.begin(), due_.end());
-    due_.erase(std::unique(due_.begin(), due_.end()), due_.end());
-  }
   blocks_.clear();
-  for (const uint32_t v : due_) {
-    if (blocks_.empty() || blocks_.back() != v / kRingLanes) blocks_.push_back(v / kRingLanes);
+  for (const auto* queue : {&due_, &pair_queue_}) {
+    for (const uint32_t v : *queue) {
+      if (blocks_.empty() || blocks_.back() != v / kRingLanes) blocks_.push_back(v / kRingLanes);
+    }
+  }
+  if (!pair_queue_.empty()) {
+    std::sort(blocks_.begin(), blocks_.end());
+    blocks_.erase(std::unique(blocks_.begin(), blocks_.end()), blocks_.end());
   }
   run_blocks(executor_, blocks_.size(), kGrain / kRingLanes, [&](size_t, size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -193,21 +196,22 @@ void Resolution::queue_violated_edges() {
                                flags_.data());
     }
   });
-  for (const uint32_t v : due_) {
-    if (flags_[v] != 0) edge_queue_.push_back(v);
+  for (const auto* queue : {&due_, &pair_queue_}) {
+    for (const uint32_t v : *queue) {
+      if (flags_[v] != 0) edge_queue_.push_back(v);
+    }
   }
 }
 
 uint32_t Resolution::stamp_queue(const std::vector<uint32_t>& queue) {
-  ++stamp_count_;
-  for (const uint32_t v : queue) stamp_[v] = stamp_count_;
-  return stamp_count_;
+  ++stamps_;
+  for (const uint32_t v : queue) stamp_[v] = stamps_;
+  return stamps_;
 }
 
 // Ascending, each living vertex once.
 void Resolution::unique(std::vector<uint32_t>& queue) {
   stamp_.resize(mesh_.slots(), 0);
-  claim_.resize(mesh_.slots(), 0);
   if (queue.size() < mesh_.slots() / kSortedQueue) {
     std::sort(queue.begin(), queue.end());
     queue.erase(std::unique(queue.begin(), queue.end()), queue.end());
@@ -290,7 +294,7 @@ std::vector<Candidate> Resolution::pair_candidates(const std::vector<uint32_t>& 
 
 void Resolution::apply_round(const std::vector<Candidate>& candidates, std::vector<uint32_t>& later,
                              OperationCounts& counts) {
-  round_ = ++claims_;
+  round_ = ++stamps_;
   for (size_t begin = 0; begin < candidates.size(); begin += kTrialRun) {
     const size_t end = std::min(begin + kTrialRun, candidates.size());
     std::array<size_t, kTrialRun> trial;
@@ -303,12 +307,12 @@ void Resolution::apply_round(const std::vector<Candidate>& candidates, std::vect
 
 // Those whose turn it will be if all before them are admitted. trial: of each candidate.
 void Resolution::try_candidates(const Candidate* candidates, size_t count, size_t* trial) {
-  const uint32_t claim = ++claims_;
+  const uint32_t claim = ++stamps_;
   tried_.clear();
   for (size_t i = 0; i < count; ++i) {
     trial[i] = Trials::kUntried;
     if (!Trials::can_try(mesh_, candidates[i]) || !free_footprint(candidates[i], claim)) continue;
-    for (const uint32_t v : footprint_) claim_[v] = claim;
+    for (const uint32_t v : footprint_) stamp_[v] = claim;
     trial[i] = tried_.size();
     tried_.push_back(&candidates[i]);
   }
@@ -333,7 +337,7 @@ void Resolution::apply_in_turn(const Candidate& candidate, size_t trial,
   trials_.begin(footprint_);
   if (apply(candidate, trial, counts)) {
     trials_.end();
-    for (const uint32_t v : footprint_) claim_[v] = round_;
+    for (const uint32_t v : footprint_) stamp_[v] = round_;
     return;
   }
   // The vertices stay due: the next iteration tries again.
@@ -356,7 +360,7 @@ bool Resolution::free_footprint(const Candidate& candidate, uint32_t claim) {
   // What an earlier candidate of the round created has no claim slot yet, and is claimed, too.
   const auto add = [&](uint32_t v) {
     footprint_.push_back(v);
-    return v < claim_.size() && claim_[v] != round_ && claim_[v] != claim;
+    return v < stamp_.size() && stamp_[v] != round_ && stamp_[v] != claim;
   };
   for (const uint32_t c : corners) {
     if (!mesh_.alive(c) || !add(c)) return false;

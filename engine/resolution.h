@@ -44,7 +44,7 @@ class Resolution {
  private:
   const std::vector<uint32_t>& all_blocks();
   void list_due(const std::vector<uint32_t>& blocks, bool all);
-  uint32_t due_lanes(uint32_t first, bool all);
+  uint16_t due_lanes(uint32_t first, bool all);
   void start_check(bool all);
   void update_hash(bool all);
   void queue_violated_edges();
@@ -84,19 +84,18 @@ class Resolution {
 
   Buffer<uint8_t> flags_;             // edge violations by the kernel
   std::vector<uint32_t> due_;         // of take_due()
-  std::vector<std::vector<uint32_t>> found_;  // per task
+  std::vector<uint16_t> lanes_;       // per block: those that are due
+  std::vector<uint32_t> first_due_;   // per task
   std::vector<uint32_t> blocks_;      // of kRingLanes vertices, with one that is due
   std::vector<uint32_t> edge_queue_;  // vertices whose edges are to be checked
   std::vector<uint32_t> pair_queue_;  // ... whose distance to non-neighbours is to be checked
   std::vector<uint32_t> changed_;     // where components may have become tiny
-  std::vector<uint32_t> stamp_;       // by vertex: the queue it is in
-  std::vector<uint32_t> claim_;       // by vertex: the last claim
+  std::vector<uint32_t> stamp_;       // by vertex: the queue it was last in, or what has claimed it
   std::vector<uint32_t> footprint_;   // of the candidate at hand
   EmbeddingGuard guard_;
   Trials trials_;
   std::vector<const Candidate*> tried_;  // of the run at hand
-  uint32_t stamp_count_ = 0;
-  uint32_t claims_ = 0;  // so far
+  uint32_t stamps_ = 0;  // so far
   uint32_t round_ = 0;   // the claim of what the round has applied
 };
 

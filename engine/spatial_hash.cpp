@@ -54,14 +54,13 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
     }
   }
   first[kParts] = total;
-  placed_.resize_uninitialized(total);
+  by_part_.resize_uninitialized(total);
   run_blocks(executor, n, kBlock, [&](size_t block, size_t begin, size_t end) {
     uint32_t* next = part_start_.data() + block * kParts;
     for (size_t i = begin; i < end; ++i) {
       const auto v = static_cast<uint32_t>(i);
       if (!mesh.alive(v)) continue;
-      const uint32_t b = bucket(mesh.at(v));
-      placed_[next[b >> part_shift]++] = {v, b};
+      by_part_[next[bucket(mesh.at(v)) >> part_shift]++] = v;
     }
   });
   // ... then each part by buckets.
@@ -71,14 +70,14 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
   executor.run(kParts, [&](size_t part) {
     uint32_t* const begin = start_.data() + (part << part_shift);
     uint32_t* const end = begin + (size_t{1} << part_shift);
-    const Placed* const from = placed_.data() + first[part];
-    const Placed* const to = placed_.data() + first[part + 1];
+    const uint32_t* const from = by_part_.data() + first[part];
+    const uint32_t* const to = by_part_.data() + first[part + 1];
     std::fill(begin, end, 0U);
-    for (const Placed* p = from; p != to; ++p) ++start_[p->bucket];
+    for (const uint32_t* v = from; v != to; ++v) ++start_[bucket(mesh.at(*v))];
     uint32_t next = first[part + 1];
     for (uint32_t* s = end; s-- != begin;) *s = next -= *s;
     // Backwards from the ends would need them: the starts move up and are moved back.
-    for (const Placed* p = from; p != to; ++p) entries_[start_[p->bucket]++] = p->id;
+    for (const uint32_t* v = from; v != to; ++v) entries_[start_[bucket(mesh.at(*v))]++] = *v;
     for (uint32_t* s = end; --s != begin;) *s = s[-1];
     *begin = first[part];
   });

@@ -20,7 +20,7 @@ namespace plc {
 //   entries  uint32 per vertex         ids, by bucket, then in ascending order
 //   late     8 bytes per insertion     what was inserted since: a list per 4 buckets
 //
-// While building another 8 bytes per vertex.
+// While building another 4 bytes per vertex.
 class SpatialHash {
  public:
   // All living vertices of the mesh. cell > 0, mesh units. slack >= 0: how far a vertex may be, on
@@ -84,10 +84,7 @@ class SpatialHash {
   Buffer<uint32_t> late_head_;
   Buffer<Late> late_;
   // By part of the buckets, then by vertex: while building.
-  struct Placed {
-    uint32_t id, bucket;
-  };
-  Buffer<Placed> placed_;
+  Buffer<uint32_t> by_part_;
   Buffer<uint32_t> part_start_;
   std::vector<std::vector<uint32_t>> missing_;  // per task: those that insert() has to enter
 };

@@ -41,11 +41,12 @@ void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& h
     Task& task = tasks_[index];
     task.too_near.clear();
     task.at_risk.clear();
+    Scratch scratch;
     for (size_t i = begin; i < end;) {
       Vec3 low, high;
       const size_t count = group_size(due.data() + i, end - i, low, high);
-      hash.collect(mesh_, low - span, high + span, task.around);
-      search_group(due.data() + i, count, reach, most, task);
+      hash.collect(mesh_, low - span, high + span, scratch.around);
+      search_group(due.data() + i, count, reach, most, scratch, task);
       i += count;
     }
   });
@@ -81,14 +82,14 @@ size_t Surroundings::group_size(const uint32_t* due, size_t count, Vec3& low, Ve
 }
 
 void Surroundings::search_group(const uint32_t* due, size_t count, float reach, float most,
-                                Task& task) const {
-  const auto around = static_cast<uint32_t>(task.around.ids.size());
+                                Scratch& scratch, Task& task) const {
+  const auto around = static_cast<uint32_t>(scratch.around.ids.size());
   const size_t padded = block_count(around, kRingLanes) * kRingLanes;
-  for (auto& stream : task.streams) stream.resize(std::max(stream.size(), padded));
-  task.hits.resize(std::max<size_t>(task.hits.size(), around + kRingLanes));
-  auto& [x, y, z, nx, ny, nz] = task.streams;
+  for (auto& stream : scratch.streams) stream.resize(std::max(stream.size(), padded));
+  scratch.hits.resize(std::max<size_t>(scratch.hits.size(), around + kRingLanes));
+  auto& [x, y, z, nx, ny, nz] = scratch.streams;
   for (uint32_t i = 0; i < around; ++i) {
-    const uint32_t w = task.around.ids[i];
+    const uint32_t w = scratch.around.ids[i];
     const Packed& p = mesh_.packed[w];
     x[i] = p.x, y[i] = p.y, z[i] = p.z;
     nx[i] = mesh_.normal.x[w], ny[i] = mesh_.normal.y[w], nz[i] = mesh_.normal.z[w];
@@ -100,20 +101,21 @@ void Surroundings::search_group(const uint32_t* due, size_t count, float reach, 
     const Vec3 p = mesh_.at(due[i]), n = mesh_.normal.at(due[i]);
     const uint32_t hits = kernels::near_or_turned(
         simd_, view, {p.x, p.y, p.z, n.x, n.y, n.z, near * near, reach * reach, most},
-        task.hits.data());
-    judge(due[i], hits, most, task);
+        scratch.hits.data());
+    judge(due[i], hits, most, scratch, task);
   }
 }
 
-void Surroundings::judge(uint32_t v, uint32_t hits, float most, Task& task) const {
+void Surroundings::judge(uint32_t v, uint32_t hits, float most, const Scratch& scratch,
+                         Task& task) const {
   const Vec3 p = mesh_.at(v), n = mesh_.normal.at(v);
   const float near = kMinApart * static_cast<float>(mesh_.delta);
   const Neighbors ring = mesh_.ring(v);
   std::optional<Risk> around;  // when something asks for it
   bool risk = false;
   for (uint32_t k = 0; k < hits; ++k) {
-    const uint32_t i = task.hits[k];
-    const uint32_t w = task.around.ids[i];
+    const uint32_t i = scratch.hits[k];
+    const uint32_t w = scratch.around.ids[i];
     if (w == v || ring.contains(w) || !mesh_.alive(w)) continue;
     if (squared_distance(p, mesh_.at(w)) < near * near) {
       task.too_near.push_back({std::min(v, w), std::max(v, w)});

@@ -41,17 +41,21 @@ class Surroundings {
   const std::vector<uint32_t>& at_risk() const { return at_risk_; }
 
  private:
-  // What one task has found, and its scratch memory; kept from search to search.
+  // What one task has found.
   struct Task {
     std::vector<VertexPair> too_near;
     std::vector<uint32_t> at_risk;
+  };
+  // What it works with.
+  struct Scratch {
     SpatialHash::Collected around;  // the group
     std::vector<float> streams[6];  // their places and normals
     std::vector<uint32_t> hits;
   };
   void search(const std::vector<uint32_t>& due, const SpatialHash& hash, float reach, float most);
-  void search_group(const uint32_t* due, size_t count, float reach, float most, Task& task) const;
-  void judge(uint32_t v, uint32_t hits, float most, Task& task) const;
+  void search_group(const uint32_t* due, size_t count, float reach, float most, Scratch& scratch,
+                    Task& task) const;
+  void judge(uint32_t v, uint32_t hits, float most, const Scratch& scratch, Task& task) const;
   size_t group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high) const;
 
   const Mesh& mesh_;
