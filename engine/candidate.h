@@ -28,7 +28,8 @@ struct Candidate {
   }
 
  private:
-  // In the order of the operation, then of the key: floats of one sign have the order of their bits.
+  // In the order of the operation, then of the key: floats of one sign have the order of their
+  // bits.
   uint64_t rank() const {
     uint32_t bits;
     std::memcpy(&bits, &key, sizeof bits);

@@ -100,8 +100,7 @@ double longest_edge(const Mesh& mesh) {
   return std::sqrt(static_cast<double>(longest));
 }
 
-void settle(Mesh& mesh, const Executor& executor, Resolution& resolution,
-            OperationCounts& counts) {
+void settle(Mesh& mesh, const Executor& executor, Resolution& resolution, OperationCounts& counts) {
   mesh.renumber(morton_order(mesh, executor), executor);
   resolution.restart();
   for (int pass = 0; pass < kConformPasses; ++pass) {

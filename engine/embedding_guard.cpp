@@ -134,8 +134,7 @@ void EmbeddingGuard::take(const Proposal& proposal) {
   boxes_.clear();
   for (const auto& face : proposal.faces) {
     faces_.push_back(triangle_of(face));
-    boxes_.push_back(
-        face_box(packed(face.place[0]), packed(face.place[1]), packed(face.place[2])));
+    boxes_.push_back(face_box(packed(face.place[0]), packed(face.place[1]), packed(face.place[2])));
   }
   box_ = boxes_[0];
   for (const FaceBox& box : boxes_) include(box_, box);

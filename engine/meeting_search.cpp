@@ -118,7 +118,8 @@ void MeetingSearch::build_leaves(const Mesh& mesh, const Executor& executor) {
       for (uint32_t k = 0; k < used; ++k) {
         const uint32_t* abc = faces_.data() + 3 * (leaf * kLanes + k);
         const FaceBox box = face_box(mesh.positions, abc);
-        boxes.set(k, {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}});
+        boxes.set(k,
+                  {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}});
         marked |= static_cast<uint32_t>(mesh.marked(abc)) << k;
       }
       for (uint32_t k = used; k < kLanes; ++k) {
@@ -143,9 +144,9 @@ void MeetingSearch::build_level(size_t index, const Executor& executor) {
       for (uint32_t k = 0; k < kLanes; ++k) {
         const size_t child = node * kLanes + k;
         const bool used = child < children;
-        level.boxes[node].set(
-            k, used ? all_lanes(below.boxes[child])
-                 : Box3{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
+        level.boxes[node].set(k, used ? all_lanes(below.boxes[child])
+                                      : Box3{{kInfinity, kInfinity, kInfinity},
+                                             {-kInfinity, -kInfinity, -kInfinity}});
         marked |= static_cast<uint32_t>(used && below.marked[child] != 0) << k;
       }
       level.marked[node] = static_cast<uint8_t>(marked);

@@ -225,9 +225,9 @@ void Mesh::renumber(const std::vector<uint32_t>& order, const Executor& executor
   carry(to.operations, operations);
   carry(to.cut_id, cut_id);
   carry(to.cut_iteration, cut_iteration);
-  for (const auto& [target, source] : {std::pair{&to.velocity, &velocity},
-                                       std::pair{&to.normal, &normal},
-                                       std::pair{&to.displacement, &displacement}}) {
+  for (const auto& [target, source] :
+       {std::pair{&to.velocity, &velocity}, std::pair{&to.normal, &normal},
+        std::pair{&to.displacement, &displacement}}) {
     carry(target->x, source->x);
     carry(target->y, source->y);
     carry(target->z, source->z);

@@ -51,7 +51,8 @@ class Recovery {
 
  private:
   void renumber() {
-    mesh_.renumber(spec_.renumbering ? morton_order(mesh_, schedule_) : living_order(mesh_), schedule_);
+    mesh_.renumber(spec_.renumbering ? morton_order(mesh_, schedule_) : living_order(mesh_),
+                   schedule_);
     evolution_.passed("ids");
   }
   // U_h / delta_h is the same on every level, within (14).

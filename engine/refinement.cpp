@@ -151,7 +151,8 @@ std::vector<uint32_t> living_order(const Mesh& mesh) {
 
 void refine(Mesh& mesh, const Executor& executor, bool renumbering) {
   // Old vertices get the low ids, without gaps, so that new and old are told apart by id.
-  if (!mesh.in_order()) mesh.renumber(renumbering ? morton_order(mesh, executor) : living_order(mesh), executor);
+  if (!mesh.in_order())
+    mesh.renumber(renumbering ? morton_order(mesh, executor) : living_order(mesh), executor);
   const uint32_t old_slots = mesh.slots();
   mesh.reserve(old_slots * 3);
   const FaceVertices faces = create_face_vertices(mesh, old_slots);

@@ -21,27 +21,29 @@ namespace plc {
 namespace {
 
 constexpr size_t kTaskBlocks = kGrain / kRingLanes;
-constexpr size_t kChunk = 128;        // queue entries per task
+constexpr size_t kChunk = 128;         // queue entries per task
+constexpr size_t kPairChunk = 16;      // ... of constraint (3), which take longer
 constexpr uint32_t kSortedQueue = 16;  // queues of more than one in so many vertices are not sorted
-constexpr size_t kSerialQueue = 256;  // shorter queues are not worth tasks
-constexpr size_t kTrialRun = 512;     // candidates per run of trials
-constexpr size_t kFewTrials = 16;     // not worth tasks
+constexpr size_t kSerialChunks = 2;    // queues up to so many chunks are not worth tasks
+constexpr size_t kTrialRun = 512;      // candidates per run of trials
+constexpr size_t kFewTrials = 16;      // not worth tasks
 
-// Runs collect(chunk of the queue, out) over chunks and joins the results in order.
+// Runs collect(entry of the queue, out) over chunks and joins the results in order.
 template <typename Collect>
 std::vector<Candidate> collect_in_order(const Executor& executor,
-                                        const std::vector<uint32_t>& queue, Collect&& collect) {
+                                        const std::vector<uint32_t>& queue, size_t chunk_size,
+                                        Collect&& collect) {
   std::vector<Candidate> all;
-  if (queue.size() <= kSerialQueue) {
+  if (queue.size() <= kSerialChunks * chunk_size) {
     for (const uint32_t v : queue) collect(v, all);
     std::sort(all.begin(), all.end());
     return all;
   }
-  const size_t chunks = (queue.size() + kChunk - 1) / kChunk;
+  const size_t chunks = block_count(queue.size(), chunk_size);
   std::vector<std::vector<Candidate>> found(chunks);
   executor.run(chunks, [&](size_t chunk) {
-    const size_t end = std::min((chunk + 1) * kChunk, queue.size());
-    for (size_t i = chunk * kChunk; i < end; ++i) collect(queue[i], found[chunk]);
+    const size_t end = std::min((chunk + 1) * chunk_size, queue.size());
+    for (size_t i = chunk * chunk_size; i < end; ++i) collect(queue[i], found[chunk]);
   });
   for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
   std::sort(all.begin(), all.end());
@@ -51,7 +53,11 @@ std::vector<Candidate> collect_in_order(const Executor& executor,
 }  // namespace
 
 Resolution::Resolution(Mesh& mesh, const Executor& executor, SimdTarget simd)
-    : mesh_(mesh), executor_(executor), simd_(simd), surroundings_(mesh, executor, simd), trials_(mesh, hash_, executor) {}
+    : mesh_(mesh),
+      executor_(executor),
+      simd_(simd),
+      surroundings_(mesh, executor, simd),
+      trials_(mesh, hash_, executor) {}
 
 void Resolution::restart() {
   stamp_.clear();
@@ -237,7 +243,7 @@ void Resolution::resolve_edges(OperationCounts& counts) {
 
 std::vector<Candidate> Resolution::edge_candidates(const std::vector<uint32_t>& queue) {
   const uint32_t stamp = stamp_queue(queue);
-  return collect_in_order(executor_, queue, [&](uint32_t u, std::vector<Candidate>& out) {
+  return collect_in_order(executor_, queue, kChunk, [&](uint32_t u, std::vector<Candidate>& out) {
     const uint32_t d = mesh_.valence(u);
     for (uint32_t k = 0; k < d; ++k) {
       const uint32_t v = mesh_.neighbor(u, k);
@@ -269,9 +275,10 @@ bool Resolution::resolve_pairs(bool first, OperationCounts& counts) {
 
 std::vector<Candidate> Resolution::pair_candidates(const std::vector<uint32_t>& queue, bool first) {
   const uint32_t stamp = stamp_queue(queue);
-  auto all = collect_in_order(executor_, queue, [&](uint32_t u, std::vector<Candidate>& out) {
-    proximity_candidates(mesh_, hash_, u, stamp_, stamp, iteration_, out);
-  });
+  auto all =
+      collect_in_order(executor_, queue, kPairChunk, [&](uint32_t u, std::vector<Candidate>& out) {
+        proximity_candidates(mesh_, hash_, u, stamp_, stamp, iteration_, out);
+      });
   if (first) {
     for (const VertexPair& pair : surroundings_.too_near()) {
       if (const auto candidate = pair_candidate(mesh_, pair.u, pair.w, iteration_)) {
@@ -433,8 +440,7 @@ bool Resolution::apply_inversion(const Candidate& candidate, size_t trial) {
   return true;
 }
 
-bool Resolution::apply_deletion(const Candidate& candidate, size_t trial,
-                                OperationCounts& counts) {
+bool Resolution::apply_deletion(const Candidate& candidate, size_t trial, OperationCounts& counts) {
   const Edge& e = candidate.edge;
   if (mesh_.valence(e.a) == 3 || mesh_.valence(e.b) == 3) {
     // Exactly two common neighbours and an apex of valence 3: the component is a tetrahedron.

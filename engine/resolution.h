@@ -29,7 +29,8 @@ class Resolution {
   // in ascending order; their periods start anew. Also brings the hash up to date and searches what
   // is around those vertices.
   const std::vector<uint32_t>& take_due(bool check_all);
-  // All of them, for their constraints only: nothing has moved, or will be asked of the motion guard.
+  // All of them, for their constraints only: nothing has moved, or will be asked of the motion
+  // guard.
   const std::vector<uint32_t>& take_all();
   // Of the vertices of these blocks of kRingLanes only, ascending: those of sleep.h.
   const std::vector<uint32_t>& take_due(const std::vector<uint32_t>& awake);
@@ -95,8 +96,8 @@ class Resolution {
   EmbeddingGuard guard_;
   Trials trials_;
   std::vector<const Candidate*> tried_;  // of the run at hand
-  uint32_t stamps_ = 0;  // so far
-  uint32_t round_ = 0;   // the claim of what the round has applied
+  uint32_t stamps_ = 0;                  // so far
+  uint32_t round_ = 0;                   // the claim of what the round has applied
 };
 
 }  // namespace plc

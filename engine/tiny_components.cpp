@@ -44,17 +44,17 @@ void delete_tetrahedron(Mesh& mesh, uint32_t v) {
 
 const std::vector<uint32_t>& TinyComponents::flood(const Mesh& mesh, uint32_t v) {
   component_.assign(1, v);
-  seen_[v] = epoch_;
+  seen_[v] = ++flood_;
   bool whole = true;
   for (size_t next = 0; next < component_.size() && whole; ++next) {
     const uint32_t u = component_[next];
     const uint32_t d = mesh.valence(u);
     for (uint32_t k = 0; k < d; ++k) {
       const uint32_t w = mesh.neighbor(u, k);
-      if (std::find(component_.begin(), component_.end(), w) != component_.end()) continue;
+      if (seen_[w] == flood_) continue;
       // Met by an earlier flood of this update, which took the whole component or found it large.
-      whole = whole && seen_[w] != epoch_;
-      seen_[w] = epoch_;
+      whole = whole && !seen(w);
+      seen_[w] = flood_;
       component_.push_back(w);
     }
     whole = whole && component_.size() <= kTinyComponent;
@@ -67,9 +67,10 @@ const std::vector<uint32_t>& TinyComponents::flood(const Mesh& mesh, uint32_t v)
 void TinyComponents::start(Mesh& mesh) {
   watched_.clear();
   seen_.assign(mesh.slots(), 0);
-  epoch_ = 1;
+  flood_ = 0;
+  first_flood_ = flood_ + 1;
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
-    if (!mesh.alive(v) || seen_[v] == epoch_) continue;
+    if (!mesh.alive(v) || seen(v)) continue;
     const auto& component = flood(mesh, v);
     if (component.empty()) continue;
     watched_.push_back({component[0], signed_volume(mesh, component) > 0});
@@ -78,12 +79,12 @@ void TinyComponents::start(Mesh& mesh) {
 
 int64_t TinyComponents::update(Mesh& mesh, const std::vector<uint32_t>& changed) {
   seen_.resize(mesh.slots(), 0);
-  ++epoch_;
+  first_flood_ = flood_ + 1;
   std::vector<Watched> still;
   int64_t deleted = 0;
   const double least = kTinyVolume * mesh.delta * mesh.delta * mesh.delta;
   const auto look = [&](uint32_t v, const Watched* known) {
-    if (v >= mesh.slots() || !mesh.alive(v) || seen_[v] == epoch_) return;
+    if (v >= mesh.slots() || !mesh.alive(v) || seen(v)) return;
     const auto& component = flood(mesh, v);
     if (component.empty()) return;
     const double volume = signed_volume(mesh, component);

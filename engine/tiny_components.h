@@ -31,9 +31,13 @@ class TinyComponents {
   const std::vector<uint32_t>& flood(const Mesh& mesh, uint32_t v);
 
   std::vector<Watched> watched_;
-  std::vector<uint32_t> seen_;  // by vertex: epoch_ when already looked at in this update
+  // Whether a flood of this update has come across v.
+  bool seen(uint32_t v) const { return seen_[v] >= first_flood_; }
+
+  std::vector<uint32_t> seen_;  // by vertex: the last flood that came across it, counted from 1
   std::vector<uint32_t> component_;
-  uint32_t epoch_ = 0;
+  uint32_t flood_ = 0;
+  uint32_t first_flood_ = 1;  // of this update
 };
 
 }  // namespace plc

@@ -49,7 +49,8 @@ bool admitted(const Mesh& mesh, const plc::SpatialHash& hash, const plc::Candida
       if (mesh.valence(e.a) == 3 || mesh.valence(e.b) == 3) return true;
       for (const plc::Vec3 place :
            {plc::midpoint(mesh.at(e.u), mesh.at(e.v)), mesh.at(e.u), mesh.at(e.v)}) {
-        if (plc::EmbeddingGuard().embeds(mesh, hash, plc::propose_deletion(mesh, e, place))) return true;
+        if (plc::EmbeddingGuard().embeds(mesh, hash, plc::propose_deletion(mesh, e, place)))
+          return true;
       }
       return false;
     default:

@@ -69,8 +69,8 @@ std::vector<Candidate> apart(const Mesh& mesh, const std::vector<Candidate>& can
   std::vector<Candidate> chosen;
   for (const Candidate& c : candidates) {
     const auto own = footprint(mesh, c.edge);
-    const bool free = std::none_of(own.begin(), own.end(),
-                                   [&](uint32_t v) { return claimed.count(v) != 0; });
+    const bool free =
+        std::none_of(own.begin(), own.end(), [&](uint32_t v) { return claimed.count(v) != 0; });
     if (!free) continue;
     claimed.insert(own.begin(), own.end());
     chosen.push_back(c);
