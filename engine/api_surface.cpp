@@ -119,6 +119,8 @@ plc_status plc_surface_level(const plc_surface* surface, int index, plc_level_re
   report->late_bubbles = r.late.bubbles;
   report->late_cavities = r.late.cavities;
   report->late_volume = r.late.volume;
+  report->moves = r.operations.moves;
+  report->checks = r.operations.checks;
   return PLC_OK;
 }
 

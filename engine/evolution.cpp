@@ -46,6 +46,8 @@ Status Evolution::iterate(const Guide& guide, Seconds& seconds, OperationCounts&
   const auto& due =
       slow_vertices_ ? resolution_.take_due(sleep_.awake()) : resolution_.take_due(true);
   passed("due, hash, surroundings");
+  counts.moves += static_cast<int64_t>(awake());
+  counts.checks += static_cast<int64_t>(due.size());
   guard_.find_folds(sleep_.awake_and_rim());
   guard_.assess(due, resolution_.surroundings().at_risk());
   passed("risk");

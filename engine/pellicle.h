@@ -336,6 +336,8 @@ struct plc_level_report {
   int64_t deferred;                    /* operations that a limit put off to the next iteration */
   int64_t late_bubbles, late_cavities; /* started in parts and cavities that had been missed */
   double late_volume;                  /* of all of them as they started, mm3 */
+  int64_t moves;  /* of single vertices; those that sleep are left out, in blocks of 16 */
+  int64_t checks; /* of single vertices' constraints after a movement (3.6, slow vertices) */
 };
 /* 0 .. plc_surface_level_count - 1, from coarse to fine. */
 PLC_API int plc_surface_level_count(const plc_surface* surface);

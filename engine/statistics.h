@@ -10,6 +10,8 @@ struct OperationCounts {
   int64_t deferred = 0;    // put off to the next iteration by a limit or by the embedding guard
   int64_t refused = 0;     // transformations that would have made the surface meet itself
   int64_t reverted = 0;    // movements taken back for the same reason, in vertices
+  int64_t moves = 0;       // of single vertices, those in blocks that are awake
+  int64_t checks = 0;      // of single vertices' constraints, after a movement
 };
 
 struct Seconds {

@@ -1,8 +1,6 @@
 #include "engine/surroundings.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <optional>
 
 #include "engine/blocks.h"
@@ -15,9 +13,9 @@ namespace plc {
 namespace {
 
 constexpr size_t kTaskVertices = 256;
-// A group is what follows one another in one cube of this size, in delta: vertices are numbered
-// along a curve that fills such cubes one by one.
-constexpr float kGroupCube = 8;
+// A group is what follows one another in a box whose sides are no longer than this, in delta:
+// vertices are numbered along a curve that keeps neighbours together.
+constexpr float kGroupBox = 8;
 // No two unit vectors have this cosine.
 constexpr float kNone = -2;
 
@@ -61,22 +59,19 @@ void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& h
   too_near_.erase(std::unique(too_near_.begin(), too_near_.end()), too_near_.end());
 }
 
-// How many of the vertices make a group, those in the same cube, and its box.
+// How many of the vertices make a group, and its box.
 size_t Surroundings::group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high) const {
-  const float inverse = 1 / (kGroupCube * static_cast<float>(mesh_.delta));
-  const auto cube_of = [&](Vec3 p) {
-    return std::array<int32_t, 3>{static_cast<int32_t>(std::floor(p.x * inverse)),
-                                  static_cast<int32_t>(std::floor(p.y * inverse)),
-                                  static_cast<int32_t>(std::floor(p.z * inverse))};
-  };
+  const float longest = kGroupBox * static_cast<float>(mesh_.delta);
   low = high = mesh_.at(due[0]);
-  const auto cube = cube_of(low);
   size_t size = 1;
   for (; size < count; ++size) {
     const Vec3 p = mesh_.at(due[size]);
-    if (cube_of(p) != cube) break;
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    const Vec3 l{std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    const Vec3 h{std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    const Vec3 extent = h - l;
+    if (std::max(std::max(extent.x, extent.y), extent.z) > longest) break;
+    low = l;
+    high = h;
   }
   return size;
 }

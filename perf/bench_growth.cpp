@@ -2,8 +2,9 @@
 //   bench_growth VERTICES [THREADS [ITERATIONS]]
 // A surface of about so many vertices in a potential that is computed (bench_potential.h), every
 // vertex awake. Prints a JSON object: nanoseconds per vertex and iteration of the whole and of its
-// parts - each the median, smallest and largest of the iterations -, bytes per vertex and the hash
-// of the surface at the end. Results do not depend on THREADS.
+// parts - each the median, smallest and largest of the iterations -, what it would take on one
+// thread to read and write in order as many bytes as the streams of a movement have, bytes per
+// vertex and the hash of the surface at the end. Results do not depend on THREADS.
 //
 // Bytes are the most that the process held while it iterated, less what it held before there was a
 // mesh. To see no memory that the making of the surface left behind, another process makes it.
@@ -146,6 +147,27 @@ void print_spread(const char* name, std::vector<Sample>& samples, double Sample:
               value(samples.size() / 2), value(0), value(samples.size() - 1));
 }
 
+// What a movement reads and writes of the streams of dynamics.h and mesh.h, bytes per vertex: rings
+// (8 columns, walked seven times), positions, Laplacians, normals, velocities, the sums of
+// Runge-Kutta. Without voxels, and each record as if it were fetched once.
+constexpr double kMovementBytes = 956;
+constexpr double kMovementMemory = 200;  // bytes per vertex of those streams
+
+// Nanoseconds per vertex for as many bytes in order, two read for one written: the memory's limit.
+double stream_ns(uint32_t vertices) {
+  const auto count = static_cast<size_t>(kMovementMemory / 3 / sizeof(float) * vertices);
+  plc::Buffer<float> a(count), b(count), sum(count);
+  double least = 1e300;
+  for (int i = 0; i < 5; ++i) {
+    const double start = plc::now();
+    for (size_t k = 0; k < count; ++k) sum[k] = a[k] + b[k];
+    asm volatile("" ::"r"(sum.data()) : "memory");  // it is wanted
+    least = std::min(least, plc::now() - start);
+  }
+  const double seconds_per_byte = least / (3.0 * static_cast<double>(count) * sizeof(float));
+  return 1e9 * seconds_per_byte * kMovementBytes;
+}
+
 void measure(const plc::Guide& guide, int threads, int iterations, std::FILE* file) {
   const int64_t before = status_bytes("VmRSS");
   const plc::Schedule schedule(threads);
@@ -173,6 +195,7 @@ void measure(const plc::Guide& guide, int threads, int iterations, std::FILE* fi
   print_spread("topology", samples, &Sample::topology);
   print_spread("normals", samples, &Sample::normals);
   print_spread("dynamics", samples, &Sample::dynamics);
+  std::printf("\"stream\": %.2f, ", stream_ns(vertices));
   std::printf("\"bytes_per_vertex\": %.1f, \"mesh_bytes_per_vertex\": %.1f, ",
               static_cast<double>(peak - before) / vertices,
               static_cast<double>(mesh.bytes()) / vertices);

@@ -273,6 +273,30 @@ TEST_CASE("progress is told after every iteration and may cancel", "[pellicle]")
   CHECK(std::string(plc_context_message(context.get())) == "cancelled");
 }
 
+TEST_CASE("a level tells how many vertices it has moved and checked", "[pellicle]") {
+  const Context context = samples::make_context();
+  const plc_image image = samples::image_of(ball());
+  const auto level = [&](int spare) {
+    plc_parameters p = samples::parameters(0.5, 0);
+    p.sleeping = p.slow_vertices = spare;
+    p.epsilon = 1e-15;  // all the iterations
+    p.max_iterations = 80;
+    const Surface surface = samples::extract(context.get(), image, p);
+    plc_level_report report{};
+    report.struct_size = sizeof report;
+    REQUIRE(plc_surface_level(surface.get(), 0, &report) == PLC_OK);
+    return report;
+  };
+  const plc_level_report all = level(0), some = level(1);
+  // Blocks are moved whole, deleted vertices with them.
+  CHECK(all.moves >= all.checks);
+  CHECK(all.iterations == some.iterations);
+  CHECK(all.checks >= all.iterations * all.vertices);
+  CHECK(some.moves < all.moves);
+  CHECK(some.checks < all.checks / 2);
+  CHECK(some.checks > 0);
+}
+
 TEST_CASE("every voxel type gives the same surface of the same values", "[pellicle]") {
   const Context context = samples::make_context();
   std::vector<uint8_t> u8;

@@ -87,6 +87,8 @@ Json level_json(const plc_level_report& level) {
             {"tetrahedron", level.tetrahedra},
             {"refinement", level.refinements}}},
           {"deferred", level.deferred},
+          {"moves", level.moves},
+          {"checks", level.checks},
           {"late",
            {{"bubbles", level.late_bubbles},
             {"cavities", level.late_cavities},

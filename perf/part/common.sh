@@ -93,6 +93,6 @@ detail() { jq --arg name "$1" '{($name): .}' >>"$dir/details.part"; }
 levels() {
   cat "$dir/$1".*.json | jq -s --arg name "$1" '
     sort_by(.seconds.evolution) | .[(length - 1) / 2 | floor]
-    | {variant: $name, surface, levels: [.levels[] | {level, iterations, vertices, converged, seconds}]}' |
+    | {variant: $name, surface, levels: [.levels[] | {level, iterations, vertices, converged, seconds, moves, checks, operations}]}' |
     detail "levels-$1"
 }

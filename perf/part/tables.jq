@@ -32,7 +32,7 @@ def ours($name): .levels as $l
   | sub("^\\| \\| "; "|  ");
 def head: "| approach | | I_3 | I_2 | I_1 | I_0 | total |", "|---|---|---|---|---|---|---|";
 
-.details as $d | .measures as $m
+.details as $d | .measures as $m | .machine.cores as $cores
 | "",
   "Seconds of topology (T), normals (N) and dynamics (F) on each level, and together (=), of the run with",
   "the median time. The paper's are of a Pentium 300 and of its own images. A star: the most iterations",
@@ -60,12 +60,33 @@ def head: "| approach | | I_3 | I_2 | I_1 | I_0 | total |", "|---|---|---|---|--
      | "| \($v) | \(.median | short) | \(.min | short) | \(.max | short) | \(.median / $whole.median | two) | \(if .hash == $whole.hash then "yes" else "no" end) |"),
     ""
    else empty end),
+  (if $m["look_\($cores)"] then
+    "## Where the time goes", "",
+    "Movements of vertices and looks around them, each times what one takes when all \($d.passes_vertices) vertices of the part `passes` take part, on \($cores) threads; the rest is what transformations take, with all else.", "",
+    "| run | movements | (s) | looks | (s) | transformations | rest (s) | together (s) |",
+    "|---|---|---|---|---|---|---|---|",
+    (["levels-fine", "coarse to fine"], ["levels-late", "coarse to fine, late bubbles"], ["levels-direct", "direct"]
+     | . as [$key, $title] | select($d[$key]) | $d[$key].levels
+     | (map(.moves) | add) as $moves | (map(.checks) | add) as $checks
+     | (map(.operations | to_entries | map(.value) | add) | add) as $operations
+     | (map(.seconds.total) | add) as $total
+     | ($moves * $m["movement_\($cores)"].median / 1000 / $d.passes_vertices) as $moving
+     | ($checks * $m["look_\($cores)"].median / 1000 / $d.passes_vertices) as $looking
+     | "| \($title) | \($moves / 1e6 | two) M | \($moving | two) | \($checks / 1e6 | two) M | \($looking | two) | \($operations) | \($total - $moving - $looking | two) | \($total | two) |"),
+    ""
+   else empty end),
+  (if $m.speedup_dynamics then
+    "## Two threads", "",
+    "The fine level, one thread against \($cores): \($m.speedup_dynamics.median | two) x in movements, \($m.speedup_topology.median | two) x in topology, where operations are applied one after the other.",
+    ""
+   else empty end),
   (if $d.growth then
     "## Growth", "",
     "An iteration on one thread, every vertex awake; ns per vertex.", "",
-    "| vertices | total | topology | normals | dynamics | bytes per vertex | of which the mesh |",
-    "|---|---|---|---|---|---|---|",
-    ($d.growth[] | "| \(.vertices) | \(.total.median | short) [\(.total.min | short) .. \(.total.max | short)] | \(.topology.median | short) | \(.normals.median | short) | \(.dynamics.median | short) | \(.bytes_per_vertex | round) | \(.mesh_bytes_per_vertex | round) |"),
+    "The last column of times: to read and write in order the 956 bytes per vertex that the streams of a movement (normals and dynamics) have, voxels left out.", "",
+    "| vertices | total | topology | normals | dynamics | bytes in order | bytes per vertex | of which the mesh |",
+    "|---|---|---|---|---|---|---|---|",
+    ($d.growth[] | "| \(.vertices) | \(.total.median | short) [\(.total.min | short) .. \(.total.max | short)] | \(.topology.median | short) | \(.normals.median | short) | \(.dynamics.median | short) | \(.stream | short) | \(.bytes_per_vertex | round) | \(.mesh_bytes_per_vertex | round) |"),
     ""
    else empty end),
   (if $d.peers then

@@ -17,4 +17,11 @@ for t in "${counts[@]}"; do
       "$report" "$one"
   done | record "speedup_$t" x ""
 done
+# Of all threads, by parts.
+for part in topology dynamics; do
+  for report in "$dir/threads-$cores".*.json; do
+    jq -s --arg part "$part" '.[1].levels[-1].seconds[$part] / .[0].levels[-1].seconds[$part]' \
+      "$report" "${report/threads-$cores./threads-1.}"
+  done | record "speedup_$part" x ""
+done
 printf '%s\n' "${counts[@]}" | jq -s . | detail threads
