@@ -35,8 +35,7 @@ HWY_INLINE Floats3 surface_force(const SurfaceForces& f, Floats value, uint32_t 
 // A stage reads more streams than the hardware follows, each of them in another page, and voxels
 // far from each other; what later blocks need is fetched while a block is worked on. Of a step of
 // 120,000 vertices on a machine whose cache others use too (avx512, ns per vertex and step): none
-// 197, the voxels of the next block 178, and the streams of the block after it 168; twice as far
-// ahead 174.
+// 197, the voxels of the next block 178, and the streams, too, 168 (kAhead says more).
 template <class Voxel>
 HWY_INLINE void prefetch_voxels(const SurfaceForces& f, uint32_t begin) {
   const ImageView& image = f.image;
@@ -50,18 +49,18 @@ HWY_INLINE void prefetch_voxels(const SurfaceForces& f, uint32_t begin) {
     if (!at.all) continue;
     for (uint32_t l = 0; l < kLanes; ++l) {
       const auto* voxel = voxels + at.first[l];
-      hwy::Prefetch(voxel);
-      hwy::Prefetch(voxel + at.row);
-      hwy::Prefetch(voxel + at.plane);
-      hwy::Prefetch(voxel + at.plane + at.row);
+      prefetch(voxel);
+      prefetch(voxel + at.row);
+      prefetch(voxel + at.plane);
+      prefetch(voxel + at.plane + at.row);
     }
   }
 }
 
 HWY_INLINE void prefetch3(const ConstFloat3s& s, uint32_t begin) {
-  hwy::Prefetch(s.x + begin);
-  hwy::Prefetch(s.y + begin);
-  hwy::Prefetch(s.z + begin);
+  prefetch(s.x + begin);
+  prefetch(s.y + begin);
+  prefetch(s.z + begin);
 }
 HWY_INLINE void prefetch3(const Float3s& s, uint32_t begin) {
   prefetch3(ConstFloat3s{s.x, s.y, s.z}, begin);

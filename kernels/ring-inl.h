@@ -25,16 +25,21 @@ HWY_INLINE const uint32_t* columns_of(const RingView& ring, uint32_t v) {
   return ring.columns + size_t{v / kRingLanes} * kRingColumns * kRingLanes + v % kRingLanes;
 }
 
-// Loops over blocks fetch what the block this many later begins with.
-inline constexpr size_t kAhead = 2;
+// Loops over blocks fetch what the block this many later begins with into the second cache, which
+// has more misses under way than the first. Of a step of 160,000 vertices: 122 ns per vertex 2
+// blocks ahead into the first cache, 110 ns so.
+inline constexpr size_t kAhead = 8;
+HWY_INLINE void prefetch(const void* p) {
+  __builtin_prefetch(p, 0, 2);
+}
 // The slots that most rings have.
 HWY_INLINE void prefetch_ring(const RingView& ring, uint32_t begin) {
   const uint32_t* column = columns_of(ring, begin);
-  for (uint32_t k = 0; k < 8; ++k) hwy::Prefetch(column + k * kRingLanes);
-  hwy::Prefetch(ring.valence + begin);
+  for (uint32_t k = 0; k < 8; ++k) prefetch(column + k * kRingLanes);
+  prefetch(ring.valence + begin);
 }
 HWY_INLINE void prefetch_records(const Packed* records, uint32_t begin) {
-  for (uint32_t i = 0; i < kRingLanes; i += 4) hwy::Prefetch(records + begin + i);
+  for (uint32_t i = 0; i < kRingLanes; i += 4) prefetch(records + begin + i);
 }
 
 HWY_INLINE bool longer_than(Floats valence, uint32_t slots) {
