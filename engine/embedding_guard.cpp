@@ -36,6 +36,10 @@ bool contains(const FaceBox& box, const Packed& p) {
   return outside == 0;
 }
 
+FaceBox widened(const Box3& box) {
+  return {{box.low[0], box.low[1], box.low[2], 0}, {box.high[0], box.high[1], box.high[2], 0}};
+}
+
 void include(FaceBox& all, const FaceBox& box) {
   for (int k = 0; k < 4; ++k) {
     all.low[k] = std::min(all.low[k], box.low[k]);
@@ -136,15 +140,17 @@ void EmbeddingGuard::take(const Proposal& proposal) {
     faces_.push_back(triangle_of(face));
     boxes_.push_back(face_box(packed(face.place[0]), packed(face.place[1]), packed(face.place[2])));
   }
-  box_ = boxes_[0];
-  for (const FaceBox& box : boxes_) include(box_, box);
+  FaceBox all = boxes_[0];
+  for (const FaceBox& box : boxes_) include(all, box);
+  std::copy_n(all.low, 3, box_.low);
+  std::copy_n(all.high, 3, box_.high);
 }
 
 bool EmbeddingGuard::embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal) {
   take(proposal);
   if (!proposal.plain && new_faces_meet()) return false;
   const float reach = kFaceReach * static_cast<float>(mesh.delta);
-  FaceBox searched = box_;
+  FaceBox searched = widened(box_);
   for (int k = 0; k < 3; ++k) {
     searched.low[k] -= reach;
     searched.high[k] += reach;
@@ -180,6 +186,7 @@ bool EmbeddingGuard::clear_of(const Mesh& mesh, const Proposal& proposal, const 
   };
   const RingView rings = mesh.rings();
   const Packed* const at = mesh.packed.data();
+  const FaceBox all = widened(box_);
   for (const uint32_t* id = ids; id != ids + count; ++id) {
     const uint32_t x = *id, d = rings.valence[x];
     if (d == 0 || removed(x)) continue;
@@ -188,7 +195,7 @@ bool EmbeddingGuard::clear_of(const Mesh& mesh, const Proposal& proposal, const 
       const uint32_t a = b;
       b = rings.slot(x, k);
       const FaceBox box = face_box(at[x], at[a], at[b]);
-      if (!boxes_overlap(box, box_) || !counts(x, a, b)) continue;
+      if (!boxes_overlap(box, all) || !counts(x, a, b)) continue;
       if (removed(a) || removed(b) || removed_edge(x, a, b)) continue;
       const uint32_t corners[3] = {x, a, b};
       const Triangle face = make_triangle(at, corners);

@@ -5,6 +5,7 @@
 
 #include "engine/annular.h"
 #include "engine/axial.h"
+#include "engine/box_lanes.h"
 #include "engine/spatial_hash.h"
 #include "engine/triangle_intersection.h"
 
@@ -43,7 +44,7 @@ class EmbeddingGuard {
   bool embeds_beside(const Mesh& mesh, const Proposal& proposal,
                      const std::vector<uint32_t>& centres);
   // Around the new faces of the last call.
-  const FaceBox& box() const { return box_; }
+  const Box3& box() const { return box_; }
 
  private:
   void take(const Proposal& proposal);
@@ -54,7 +55,7 @@ class EmbeddingGuard {
 
   std::vector<Triangle> faces_;  // the new ones
   std::vector<FaceBox> boxes_;
-  FaceBox box_{};
+  Box3 box_{};
   SpatialHash::Collected around_;
 };
 

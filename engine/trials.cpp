@@ -21,7 +21,7 @@ void include(Box3& box, Vec3 p) {
   }
 }
 
-void include(Box3& box, const FaceBox& other) {
+void include(Box3& box, const Box3& other) {
   include(box, Vec3{other.low[0], other.low[1], other.low[2]});
   include(box, Vec3{other.high[0], other.high[1], other.high[2]});
 }
