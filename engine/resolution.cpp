@@ -102,7 +102,10 @@ const std::vector<uint32_t>& Resolution::take_due(const std::vector<uint32_t>& a
 const std::vector<uint32_t>& Resolution::take_all() {
   list_due(all_blocks(), true);
   start_check(true);
+  // Every vertex has just been entered where it is.
+  hash_.set_slack(0);
   surroundings_.search_near(due_, hash_);
+  hash_.set_slack(kCheckPath * static_cast<float>(mesh_.delta));
   return due_;
 }
 

@@ -54,13 +54,14 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
     }
   }
   first[kParts] = total;
-  by_part_.resize_uninitialized(total);
+  placed_.resize_uninitialized(total);
   run_blocks(executor, n, kBlock, [&](size_t block, size_t begin, size_t end) {
     uint32_t* next = part_start_.data() + block * kParts;
     for (size_t i = begin; i < end; ++i) {
       const auto v = static_cast<uint32_t>(i);
       if (!mesh.alive(v)) continue;
-      by_part_[next[bucket(mesh.at(v)) >> part_shift]++] = v;
+      const uint32_t b = bucket(mesh.at(v));
+      placed_[next[b >> part_shift]++] = {v, b};
     }
   });
   // ... then each part by buckets.
@@ -70,14 +71,14 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
   executor.run(kParts, [&](size_t part) {
     uint32_t* const begin = start_.data() + (part << part_shift);
     uint32_t* const end = begin + (size_t{1} << part_shift);
-    const uint32_t* const from = by_part_.data() + first[part];
-    const uint32_t* const to = by_part_.data() + first[part + 1];
+    const Placed* const from = placed_.data() + first[part];
+    const Placed* const to = placed_.data() + first[part + 1];
     std::fill(begin, end, 0U);
-    for (const uint32_t* v = from; v != to; ++v) ++start_[bucket(mesh.at(*v))];
+    for (const Placed* p = from; p != to; ++p) ++start_[p->bucket];
     uint32_t next = first[part + 1];
     for (uint32_t* s = end; s-- != begin;) *s = next -= *s;
     // Backwards from the ends would need them: the starts move up and are moved back.
-    for (const uint32_t* v = from; v != to; ++v) entries_[start_[bucket(mesh.at(*v))]++] = *v;
+    for (const Placed* p = from; p != to; ++p) entries_[start_[p->bucket]++] = p->id;
     for (uint32_t* s = end; --s != begin;) *s = s[-1];
     *begin = first[part];
   });

@@ -20,13 +20,15 @@ namespace plc {
 //   entries  uint32 per vertex         ids, by bucket, then in ascending order
 //   late     8 bytes per insertion     what was inserted since: a list per 4 buckets
 //
-// While building another 4 bytes per vertex.
+// While building another 8 bytes per vertex.
 class SpatialHash {
  public:
   // All living vertices of the mesh. cell > 0, mesh units. slack >= 0: how far a vertex may be, on
   // each axis, from where it was when it was last entered: queries look that much farther. The same
   // table for any executor.
   void build(const Mesh& mesh, float cell, const Executor& executor, float slack = 0);
+  // From now on a vertex may be this far from where it was when it was last entered.
+  void set_slack(float slack) { slack_ = slack; }
   // A vertex that was created since, or has moved by more than the slack. Where queries would find
   // it in any case, nothing.
   void insert(uint32_t v, Vec3 p);
@@ -84,7 +86,10 @@ class SpatialHash {
   Buffer<uint32_t> late_head_;
   Buffer<Late> late_;
   // By part of the buckets, then by vertex: while building.
-  Buffer<uint32_t> by_part_;
+  struct Placed {
+    uint32_t id, bucket;
+  };
+  Buffer<Placed> placed_;
   Buffer<uint32_t> part_start_;
   std::vector<std::vector<uint32_t>> missing_;  // per task: those that insert() has to enter
 };

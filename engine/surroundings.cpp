@@ -16,22 +16,23 @@ constexpr size_t kTaskVertices = 256;
 // A group is what follows one another in a box whose sides are no longer than this, in delta:
 // vertices are numbered along a curve that keeps neighbours together.
 constexpr float kGroupBox = 8;
-// No two unit vectors have this cosine.
+// Nothing is turned so far.
 constexpr float kNone = -2;
 
 }  // namespace
 
 void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& hash) {
-  search(due, hash, kRiskReach * static_cast<float>(mesh_.delta), kRiskDot);
+  search(due, hash, Wanted::kNearAndRisk);
 }
 
-void Surroundings::search_near(const std::vector<uint32_t>& due, const SpatialHash& hash) {
-  search(due, hash, kMinApart * static_cast<float>(mesh_.delta), kNone);
+void Surroundings::search_near(const std::vector<uint32_t>& all, const SpatialHash& hash) {
+  search(all, hash, Wanted::kNear);
 }
 
-// For what is nearer than kMinApart, and within reach and turned by `most`.
-void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& hash, float reach,
-                          float most) {
+void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& hash,
+                          Wanted wanted) {
+  const float reach =
+      (wanted == Wanted::kNear ? kMinApart : kRiskReach) * static_cast<float>(mesh_.delta);
   const Vec3 span{reach, reach, reach};
   const size_t tasks = block_count(due.size(), kTaskVertices);
   tasks_.resize(std::max(tasks_.size(), tasks));
@@ -44,7 +45,7 @@ void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& h
       Vec3 low, high;
       const size_t count = group_size(due.data() + i, end - i, low, high);
       hash.collect(mesh_, low - span, high + span, scratch.around);
-      search_group(due.data() + i, count, reach, most, scratch, task);
+      search_group(due.data() + i, count, wanted, scratch, task);
       i += count;
     }
   });
@@ -76,33 +77,62 @@ size_t Surroundings::group_size(const uint32_t* due, size_t count, Vec3& low, Ve
   return size;
 }
 
-void Surroundings::search_group(const uint32_t* due, size_t count, float reach, float most,
-                                Scratch& scratch, Task& task) const {
-  const auto around = static_cast<uint32_t>(scratch.around.ids.size());
-  const size_t padded = block_count(around, kRingLanes) * kRingLanes;
+// The places of what is around, and the normals where they are wanted.
+void Surroundings::fetch(Wanted wanted, Scratch& scratch) const {
+  const size_t count = scratch.around.ids.size();
+  const size_t padded = block_count(count, kRingLanes) * kRingLanes;
   for (auto& stream : scratch.streams) stream.resize(std::max(stream.size(), padded));
-  scratch.hits.resize(std::max<size_t>(scratch.hits.size(), around + kRingLanes));
+  scratch.hits.resize(std::max<size_t>(scratch.hits.size(), count + kRingLanes));
   auto& [x, y, z, nx, ny, nz] = scratch.streams;
-  for (uint32_t i = 0; i < around; ++i) {
-    const uint32_t w = scratch.around.ids[i];
-    const Packed& p = mesh_.packed[w];
-    x[i] = p.x, y[i] = p.y, z[i] = p.z;
-    nx[i] = mesh_.normal.x[w], ny[i] = mesh_.normal.y[w], nz[i] = mesh_.normal.z[w];
-  }
-  const kernels::NearbyView view{x.data(),  y.data(),  z.data(), nx.data(),
-                                 ny.data(), nz.data(), around};
-  const float near = kMinApart * static_cast<float>(mesh_.delta);
   for (size_t i = 0; i < count; ++i) {
-    const Vec3 p = mesh_.at(due[i]), n = mesh_.normal.at(due[i]);
-    const uint32_t hits = kernels::near_or_turned(
-        simd_, view, {p.x, p.y, p.z, n.x, n.y, n.z, near * near, reach * reach, most},
-        scratch.hits.data());
-    judge(due[i], hits, most, scratch, task);
+    const Packed& p = mesh_.packed[scratch.around.ids[i]];
+    x[i] = p.x, y[i] = p.y, z[i] = p.z;
+  }
+  if (wanted == Wanted::kNear) return;
+  for (size_t i = 0; i < count; ++i) {
+    const Vec3 n = mesh_.normal.at(scratch.around.ids[i]);
+    nx[i] = n.x, ny[i] = n.y, nz[i] = n.z;
   }
 }
 
-void Surroundings::judge(uint32_t v, uint32_t hits, float most, const Scratch& scratch,
-                         Task& task) const {
+void Surroundings::search_group(const uint32_t* due, size_t count, Wanted wanted, Scratch& scratch,
+                                Task& task) const {
+  fetch(wanted, scratch);
+  const auto around = static_cast<uint32_t>(scratch.around.ids.size());
+  const auto& [x, y, z, nx, ny, nz] = scratch.streams;
+  const bool near_only = wanted == Wanted::kNear;
+  // With no normal to compare with nothing is turned, whatever is in the streams.
+  const kernels::NearbyView view =
+      near_only
+          ? kernels::NearbyView{x.data(), y.data(), z.data(), x.data(), y.data(), z.data(), around}
+          : kernels::NearbyView{x.data(),  y.data(),  z.data(), nx.data(),
+                                ny.data(), nz.data(), around};
+  const float near = kMinApart * static_cast<float>(mesh_.delta);
+  const float far = near_only ? near : kRiskReach * static_cast<float>(mesh_.delta);
+  for (size_t i = 0; i < count; ++i) {
+    const Vec3 p = mesh_.at(due[i]);
+    const Vec3 n = near_only ? Vec3{} : mesh_.normal.at(due[i]);
+    const uint32_t hits = kernels::near_or_turned(
+        simd_, view,
+        {p.x, p.y, p.z, n.x, n.y, n.z, near * near, far * far, near_only ? kNone : kRiskDot},
+        scratch.hits.data());
+    if (near_only) {
+      list_near(due[i], hits, scratch, task);
+    } else {
+      judge(due[i], hits, scratch, task);
+    }
+  }
+}
+
+// The pairs in which v has the smaller id; the other one sees the others.
+void Surroundings::list_near(uint32_t v, uint32_t hits, const Scratch& scratch, Task& task) const {
+  for (uint32_t k = 0; k < hits; ++k) {
+    const uint32_t w = scratch.around.ids[scratch.hits[k]];
+    if (w > v && mesh_.alive(w) && !mesh_.adjacent(v, w)) task.too_near.push_back({v, w});
+  }
+}
+
+void Surroundings::judge(uint32_t v, uint32_t hits, const Scratch& scratch, Task& task) const {
   const Vec3 p = mesh_.at(v), n = mesh_.normal.at(v);
   const float near = kMinApart * static_cast<float>(mesh_.delta);
   const Neighbors ring = mesh_.ring(v);
@@ -115,7 +145,7 @@ void Surroundings::judge(uint32_t v, uint32_t hits, float most, const Scratch& s
     if (squared_distance(p, mesh_.at(w)) < near * near) {
       task.too_near.push_back({std::min(v, w), std::max(v, w)});
     }
-    if (dot(n, mesh_.normal.at(w)) > most) continue;
+    if (dot(n, mesh_.normal.at(w)) > kRiskDot) continue;
     if (!around && ring.size() <= kRiskRing) around.emplace(mesh_, v, ring);
     if (!around || around->may_meet(w)) {
       task.at_risk.push_back(w);

@@ -30,8 +30,9 @@ class Surroundings {
 
   // due: ascending. The hash holds every living vertex. Normals are those of mesh.normal.
   void search(const std::vector<uint32_t>& due, const SpatialHash& hash);
-  // Only what is too near, for constraint (3): a smaller box, and no normals.
-  void search_near(const std::vector<uint32_t>& due, const SpatialHash& hash);
+  // Only what is too near, for constraint (3), around all living vertices: a smaller box, no
+  // normals, and each pair is seen from one side.
+  void search_near(const std::vector<uint32_t>& all, const SpatialHash& hash);
 
   // Of the last search: the non-neighbours u < w, one of them due, that are nearer than (3) allows;
   // sorted.
@@ -52,10 +53,13 @@ class Surroundings {
     std::vector<float> streams[6];  // their places and normals
     std::vector<uint32_t> hits;
   };
-  void search(const std::vector<uint32_t>& due, const SpatialHash& hash, float reach, float most);
-  void search_group(const uint32_t* due, size_t count, float reach, float most, Scratch& scratch,
+  enum class Wanted { kNear, kNearAndRisk };
+  void search(const std::vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted);
+  void fetch(Wanted wanted, Scratch& scratch) const;
+  void search_group(const uint32_t* due, size_t count, Wanted wanted, Scratch& scratch,
                     Task& task) const;
-  void judge(uint32_t v, uint32_t hits, float most, const Scratch& scratch, Task& task) const;
+  void list_near(uint32_t v, uint32_t hits, const Scratch& scratch, Task& task) const;
+  void judge(uint32_t v, uint32_t hits, const Scratch& scratch, Task& task) const;
   size_t group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high) const;
 
   const Mesh& mesh_;

@@ -96,7 +96,7 @@ TEST_CASE("what is too near and what is at risk is found around all, many and fe
 TEST_CASE("a search for what is too near finds that alone", "[surroundings]") {
   Mesh mesh;
   fill_scene(mesh);
-  const auto due = every(mesh, 3);
+  const auto due = every(mesh, 1);
   plc::SpatialHash hash;
   hash.build(mesh, plc::kHashCell * static_cast<float>(mesh.delta), samples::kSerial);
   Surroundings around(mesh, samples::kSerial, plc::best_simd_target());
