@@ -114,10 +114,11 @@ unset key; unset grid
 set grid x
 set logscale x
 set xlabel 's'
-set xrange [0.03:*]
+set xrange [0.01:*]
+set ytics noenhanced
 set yrange [-0.6:$(wc -l <"$data/peers") - 0.4]
 set lmargin 48
-plot '$data/peers' using 2:0:(0.03):2:(\$0 - 0.36):(\$0 + 0.36):5:ytic(1) with boxxyerror lc variable, \
+plot '$data/peers' using 2:0:(0.01):2:(\$0 - 0.36):(\$0 + 0.36):5:ytic(1) with boxxyerror lc variable, \
   '' using 2:0:3:4 with xerrorbars lt -1 pt 0
 END
 fi
