@@ -47,8 +47,9 @@ inline constexpr int kConfirmPause = 20;
 // smaller cells cost more rows, most of them empty. With every vertex of a head CT due a look takes
 // 364 ns at 2, 327 at 3, 283 at 4.
 inline constexpr float kHashCell = 4.0F;
-// Built anew when more than one in so many vertices has been entered a second time. Those entries are
-// walked one by one: at 4 they were a quarter of what it takes to collect what is around a vertex.
+// Built anew when more than one in so many vertices has been entered a second time. Those entries
+// are walked one by one: at 4 they were a quarter of what it takes to collect what is around a
+// vertex.
 inline constexpr uint32_t kHashInsertions = 32;
 
 // ---- resolution (figure 9) ------------------------------------------------------------------
