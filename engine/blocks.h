@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "engine/constants.h"
+#include "kernels/ring.h"
 #include "pyramid/executor.h"
 
 namespace plc {
+
+// Of kRingLanes vertices, per task.
+inline constexpr size_t kTaskBlocks = kGrain / kRingLanes;
 
 inline size_t block_count(size_t count, size_t block) {
   return (count + block - 1) / block;

@@ -14,8 +14,6 @@ namespace plc {
 
 namespace {
 
-constexpr size_t kTaskBlocks = kGrain / kRingLanes;
-
 bool stretched(const Metric& m) {
   return m.x != 1 || m.y != 1 || m.z != 1;
 }

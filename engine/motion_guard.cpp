@@ -6,12 +6,6 @@
 
 namespace plc {
 
-namespace {
-
-constexpr size_t kTaskBlocks = kGrain / kRingLanes;
-
-}  // namespace
-
 void MotionGuard::find_folds(const std::vector<uint32_t>& blocks) {
   folds_.resize_uninitialized(mesh_.padded());
   const Streams3& n = mesh_.normal;

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <numeric>
+#include <utility>
 
 #include "engine/annular.h"
 #include "engine/axial.h"
@@ -20,7 +19,6 @@ namespace plc {
 
 namespace {
 
-constexpr size_t kTaskBlocks = kGrain / kRingLanes;
 constexpr size_t kChunk = 128;         // queue entries per task
 constexpr size_t kPairChunk = 16;      // ... of constraint (3), which take longer
 constexpr uint32_t kSortedQueue = 16;  // queues of more than one in so many vertices are not sorted
@@ -56,6 +54,7 @@ Resolution::Resolution(Mesh& mesh, const Executor& executor, SimdTarget simd)
     : mesh_(mesh),
       executor_(executor),
       simd_(simd),
+      due_(mesh, executor),
       surroundings_(mesh, executor, simd),
       trials_(mesh, hash_, executor) {}
 
@@ -86,97 +85,52 @@ void Resolution::run(uint32_t iteration, OperationCounts& counts) {
 }
 
 const std::vector<uint32_t>& Resolution::take_due(bool check_all) {
-  list_due(all_blocks(), check_all);
-  start_check(check_all);
-  surroundings_.search(due_, hash_);
-  return due_;
+  if (check_all) {
+    due_.list_all();
+  } else {
+    due_.list_due();
+  }
+  return look_around(check_all);
 }
 
 const std::vector<uint32_t>& Resolution::take_due(const std::vector<uint32_t>& awake) {
-  list_due(awake, false);
-  start_check(false);
-  surroundings_.search(due_, hash_);
-  return due_;
+  due_.list_due(awake);
+  return look_around(false);
 }
 
 const std::vector<uint32_t>& Resolution::take_all() {
-  list_due(all_blocks(), true);
+  due_.list_all();
   start_check(true);
   // Every vertex has just been entered where it is.
   hash_.set_slack(0);
-  surroundings_.search_near(due_, hash_);
+  surroundings_.search_near(due_.list(), hash_);
   hash_.set_slack(kCheckPath * static_cast<float>(mesh_.delta));
-  return due_;
-}
-
-const std::vector<uint32_t>& Resolution::all_blocks() {
-  blocks_.resize(mesh_.padded() / kRingLanes);
-  std::iota(blocks_.begin(), blocks_.end(), 0U);
-  return blocks_;
-}
-
-void Resolution::list_due(const std::vector<uint32_t>& blocks, bool all) {
-  lanes_.resize(blocks.size());
-  first_due_.assign(block_count(blocks.size(), kTaskBlocks) + 1, 0);
-  run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      lanes_[i] = due_lanes(blocks[i] * kRingLanes, all);
-      first_due_[task + 1] += static_cast<uint32_t>(std::popcount(lanes_[i]));
-    }
-  });
-  std::partial_sum(first_due_.begin(), first_due_.end(), first_due_.begin());
-  due_.resize(first_due_.back());
-  run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {
-    uint32_t* next = due_.data() + first_due_[task];
-    for (size_t i = begin; i < end; ++i) {
-      for (uint32_t lanes = lanes_[i]; lanes != 0; lanes &= lanes - 1) {
-        *next++ = blocks[i] * kRingLanes + static_cast<uint32_t>(std::countr_zero(lanes));
-      }
-    }
-  });
-}
-
-// Of a block, those that are due by the slow-vertex rule, as bits; counts the periods of the
-// others. What sleeps, or might, has none.
-uint16_t Resolution::due_lanes(uint32_t first, bool all) {
-  const float far = all ? 0 : kCheckPath * static_cast<float>(mesh_.delta);
-  const float* const path = &mesh_.path[first];
-  const uint8_t* const calm = &mesh_.calm[first];
-  uint8_t* const idle = &mesh_.idle[first];
-  const uint16_t* const valence = mesh_.rings().valence + first;
-  int32_t due[kRingLanes];
-  for (uint32_t k = 0; k < kRingLanes; ++k) {
-    due[k] = static_cast<int32_t>(path[k] >= far) | static_cast<int32_t>(idle[k] >= kCheckPeriod);
-    const int32_t counts = static_cast<int32_t>(calm[k] < kCalmPeriod) & ~due[k];
-    idle[k] = static_cast<uint8_t>(idle[k] + (counts & 1));
-    due[k] &= static_cast<int32_t>(valence[k] != 0);
-  }
-  uint32_t lanes = 0;
-  for (uint32_t k = 0; k < kRingLanes; ++k) lanes |= static_cast<uint32_t>(due[k]) << k;
-  return static_cast<uint16_t>(lanes);
+  return due_.list();
 }
 
 // all: whether every vertex is due.
+const std::vector<uint32_t>& Resolution::look_around(bool all) {
+  start_check(all);
+  surroundings_.search(due_.list(), hash_);
+  return due_.list();
+}
+
 void Resolution::start_check(bool all) {
   pair_queue_.clear();
   std::fill(mesh_.operations.begin(), mesh_.operations.end(), uint8_t{0});
-  for (const uint32_t v : due_) {
-    mesh_.path[v] = 0;
-    mesh_.idle[v] = 0;
-  }
   update_hash(all);
 }
 
 // A vertex is due before it has moved farther than the slack, and is entered anew then.
 void Resolution::update_hash(bool all) {
-  const bool many = due_.size() + hash_.inserted() > mesh_.slots() / kHashInsertions;
+  const bool many = due_.list().size() + hash_.inserted() > mesh_.slots() / kHashInsertions;
   if (all || many || !hash_valid_) {
     const auto delta = static_cast<float>(mesh_.delta);
     hash_.build(mesh_, kHashCell * delta, executor_, kCheckPath * delta);
     hash_valid_ = true;
     return;
   }
-  hash_.insert(mesh_, due_, executor_);
+  hash_.insert(mesh_, due_.list(), executor_);
 }
 
 void Resolution::add_due(const std::vector<uint32_t>& vertices) {
@@ -188,7 +142,7 @@ void Resolution::queue_violated_edges() {
   const auto delta = static_cast<float>(mesh_.delta);
   flags_.resize_uninitialized(mesh_.padded());
   blocks_.clear();
-  for (const auto* queue : {&due_, &pair_queue_}) {
+  for (const auto* queue : {&due_.list(), &std::as_const(pair_queue_)}) {
     for (const uint32_t v : *queue) {
       if (blocks_.empty() || blocks_.back() != v / kRingLanes) blocks_.push_back(v / kRingLanes);
     }
@@ -197,7 +151,7 @@ void Resolution::queue_violated_edges() {
     std::sort(blocks_.begin(), blocks_.end());
     blocks_.erase(std::unique(blocks_.begin(), blocks_.end()), blocks_.end());
   }
-  run_blocks(executor_, blocks_.size(), kGrain / kRingLanes, [&](size_t, size_t begin, size_t end) {
+  run_blocks(executor_, blocks_.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const uint32_t v = blocks_[i] * kRingLanes;
       kernels::edge_violations(simd_, mesh_.rings(), mesh_.packed.data(), delta * delta,
@@ -205,7 +159,7 @@ void Resolution::queue_violated_edges() {
                                flags_.data());
     }
   });
-  for (const auto* queue : {&due_, &pair_queue_}) {
+  for (const auto* queue : {&due_.list(), &std::as_const(pair_queue_)}) {
     for (const uint32_t v : *queue) {
       if (flags_[v] != 0) edge_queue_.push_back(v);
     }

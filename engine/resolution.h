@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "engine/candidate.h"
+#include "engine/due_vertices.h"
 #include "engine/embedding_guard.h"
 #include "engine/mesh.h"
 #include "engine/spatial_hash.h"
@@ -43,9 +44,7 @@ class Resolution {
   void run(uint32_t iteration, OperationCounts& counts);
 
  private:
-  const std::vector<uint32_t>& all_blocks();
-  void list_due(const std::vector<uint32_t>& blocks, bool all);
-  uint16_t due_lanes(uint32_t first, bool all);
+  const std::vector<uint32_t>& look_around(bool all);
   void start_check(bool all);
   void update_hash(bool all);
   void queue_violated_edges();
@@ -76,6 +75,7 @@ class Resolution {
   Mesh& mesh_;
   const Executor& executor_;
   SimdTarget simd_;
+  DueVertices due_;  // of take_due()
   SpatialHash hash_;
   bool hash_valid_ = false;
   Surroundings surroundings_;
@@ -84,9 +84,6 @@ class Resolution {
   uint32_t next_cut_ = 1;
 
   Buffer<uint8_t> flags_;             // edge violations by the kernel
-  std::vector<uint32_t> due_;         // of take_due()
-  std::vector<uint16_t> lanes_;       // per block: those that are due
-  std::vector<uint32_t> first_due_;   // per task
   std::vector<uint32_t> blocks_;      // of kRingLanes vertices, with one that is due
   std::vector<uint32_t> edge_queue_;  // vertices whose edges are to be checked
   std::vector<uint32_t> pair_queue_;  // ... whose distance to non-neighbours is to be checked

@@ -5,7 +5,8 @@
 // as everything that changes the surface keeps to this:
 //
 //   Loops      Gather, never scatter: a task writes what belongs to its own vertices and reads what
-//              no task of the pass writes. Tasks are fixed blocks (blocks.h, kGrain), whatever the
+//              no task of the pass writes; marks that several tasks set to the same value are
+//              atomic (sleep.cpp). Tasks are fixed blocks (blocks.h, kGrain), whatever the
 //              number of threads. Nothing asks which thread it is on, how many there are, what time
 //              it is, or in which order tasks ended. kSerialBelow chooses who runs the tasks, never
 //              what they are.
@@ -13,8 +14,9 @@
 //              No atomics on floats, no reduction by the thread library.
 //   Order      What tasks have found is joined in the order of tasks. Sorts have total keys: two
 //              that compare equal mean the same. Nothing is ordered by addresses or by the places
-//              of a hash table. Operations are applied in that order on one thread; ids are taken
-//              from the free list, and given out anew along the Morton curve, ties by old id.
+//              of a hash table. Operations are tried in parallel, and applied in that order on one
+//              thread, whatever was tried (trials.h); ids are taken from the free list, and
+//              given out anew along the Morton curve, ties by old id.
 //   Rounding   Every operation rounds once, in the order written: -ffp-contract=off, no MulAdd, no
 //              approximate reciprocal or root, no -ffast-math, no -march. A kernel has the bits of
 //              its scalar twin on every target (kernels/scalar.h), tails, padding and deleted

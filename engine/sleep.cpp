@@ -11,8 +11,6 @@ namespace plc {
 
 namespace {
 
-constexpr size_t kTaskBlocks = kGrain / kRingLanes;
-
 bool all_calm(const Mesh& mesh, uint32_t block) {
   const uint8_t* calm = mesh.calm.data() + size_t{block} * kRingLanes;
   uint8_t least = 255;

@@ -76,8 +76,8 @@ def head: "| approach | | I_3 | I_2 | I_1 | I_0 | total |", "|---|---|---|---|--
     ""
    else empty end),
   (if $m.speedup_dynamics then
-    "## Two threads", "",
-    "The fine level, one thread against \($cores): \($m.speedup_dynamics.median | two) x in movements, \($m.speedup_topology.median | two) x in topology, where operations are applied one after the other.",
+    "## Threads", "",
+    "The fine level, \($cores) threads against one: \($m.speedup_dynamics.median | two) x in movements, \($m.speedup_topology.median | two) x in topology, where operations are applied one after the other.",
     ""
    else empty end),
   (if $d.growth then
