@@ -1,13 +1,16 @@
-// The C API: versions, defaults and contexts.
+// The C API: versions and contexts.
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <thread>
+#include <string_view>
 
-#include "engine/constants.h"
 #include "engine/handles.h"
 
 namespace {
+
+#define PLC_TEXT_OF(x) #x
+#define PLC_VERSION_TEXT_OF(a, b, c) PLC_TEXT_OF(a) "." PLC_TEXT_OF(b) "." PLC_TEXT_OF(c)
+#define PLC_VERSION_TEXT \
+  PLC_VERSION_TEXT_OF(PLC_VERSION_MAJOR, PLC_VERSION_MINOR, PLC_VERSION_PATCH)
 
 constexpr int kMaxThreads = 1024;
 
@@ -32,7 +35,7 @@ bool target_of(plc_simd simd, plc::SimdTarget& target) {
   return false;
 }
 
-plc_status refuse(char* error, size_t error_size, plc_status status, const std::string& line) {
+plc_status refuse(char* error, size_t error_size, plc_status status, std::string_view line) {
   if (error != nullptr && error_size > 0) {
     const size_t n = std::min(error_size - 1, line.size());
     std::memcpy(error, line.data(), n);
@@ -41,54 +44,76 @@ plc_status refuse(char* error, size_t error_size, plc_status status, const std::
   return status;
 }
 
+plc::Status check(const plc_context_options& options) {
+  if (options.threads < 0 || options.threads > kMaxThreads) {
+    return plc::bad_argument("threads " + std::to_string(options.threads) + ": must be 0 .. 1024");
+  }
+  if ((options.allocate == nullptr) != (options.release == nullptr)) {
+    return plc::bad_argument("allocate, release: both or neither must be NULL");
+  }
+  if (options.memory_limit < 0) {
+    return plc::bad_argument("memory limit " + std::to_string(options.memory_limit) +
+                             ": must not be negative");
+  }
+  return {};
+}
+
+plc::Status create(const plc_context_options* options, plc_context** context) {
+  if (context == nullptr) return plc::bad_argument("context: must not be NULL");
+  *context = nullptr;
+  plc_context_options used;
+  plc_context_options_defaults(&used);
+  if (options != nullptr) {
+    if (plc::Status s = plc::take_struct(options, plc_context_options_defaults, "options", used);
+        !s.ok()) {
+      return s;
+    }
+  }
+  if (plc::Status s = check(used); !s.ok()) return s;
+  plc::SimdTarget target{};
+  if (!target_of(used.simd, target)) return plc::bad_argument("simd: not a plc_simd");
+  if (!plc::simd_target_available(target)) {
+    return plc::bad_argument("simd " + std::string(plc::simd_target_name(target)) +
+                             ": this machine does not have it");
+  }
+  auto made = std::make_unique<plc_context>();
+  made->host = std::make_shared<plc::Host>(
+      plc::Memory::Hooks{used.allocate, used.release, used.allocator_user}, used.memory_limit,
+      plc::Threads{used.threads, used.parallel_for, used.parallel_for_user}, target);
+  made->host->log_fn = used.log;
+  made->host->log_user = used.log_user;
+  *context = made.release();
+  return {};
+}
+
 }  // namespace
 
 extern "C" {
 
 const char* plc_version_string(void) {
+  return PLC_VERSION_TEXT;
+}
+
+int plc_version(void) {
   return PLC_VERSION;
 }
 
 void plc_context_options_defaults(plc_context_options* options) {
+  if (options == nullptr) return;
   *options = {};
   options->struct_size = sizeof *options;
 }
 
 plc_status plc_context_create(const plc_context_options* options, plc_context** context,
                               char* error, size_t error_size) {
-  if (context == nullptr) {
-    return refuse(error, error_size, PLC_INVALID_ARGUMENT, "context: must not be NULL");
-  }
-  *context = nullptr;
-  plc_context_options used;
-  plc_context_options_defaults(&used);
-  if (options != nullptr) {
-    if (options->struct_size != sizeof used) {
-      return refuse(error, error_size, PLC_INVALID_ARGUMENT,
-                    "options: struct_size is not that of this version");
-    }
-    used = *options;
-  }
-  if (used.threads < 0 || used.threads > kMaxThreads) {
-    return refuse(error, error_size, PLC_INVALID_ARGUMENT,
-                  "threads " + std::to_string(used.threads) + ": must be 0 .. 1024");
-  }
-  plc::SimdTarget target{};
-  if (!target_of(used.simd, target)) {
-    return refuse(error, error_size, PLC_INVALID_ARGUMENT, "simd: not a plc_simd");
-  }
-  if (!plc::simd_target_available(target)) {
-    return refuse(
-        error, error_size, PLC_INVALID_ARGUMENT,
-        "simd " + std::string(plc::simd_target_name(target)) + ": this machine does not have it");
-  }
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   try {
-    *context = new plc_context(used.threads == 0 ? cores : used.threads, target);
-  } catch (const std::exception&) {
+    const plc::Status status = create(options, context);
+    return refuse(error, error_size, static_cast<plc_status>(status.code()), status.message());
+  } catch (const std::bad_alloc&) {
     return refuse(error, error_size, PLC_OUT_OF_MEMORY, "out of memory");
+  } catch (...) {
+    return refuse(error, error_size, PLC_INTERNAL, "internal error");
   }
-  return PLC_OK;
 }
 
 void plc_context_destroy(plc_context* context) {
@@ -96,59 +121,19 @@ void plc_context_destroy(plc_context* context) {
 }
 
 const char* plc_context_message(const plc_context* context) {
-  return context->message.c_str();
+  return context == nullptr ? "" : context->message.c_str();
 }
 int plc_context_threads(const plc_context* context) {
-  return context->schedule.threads();
+  return context == nullptr ? 0 : context->host->schedule.threads();
 }
 const char* plc_context_simd(const plc_context* context) {
-  return plc::simd_target_name(context->simd).data();
+  return context == nullptr ? "" : plc::simd_target_name(context->host->simd).data();
 }
-
-void plc_image_defaults(plc_image* image) {
-  *image = {};
-  image->struct_size = sizeof *image;
-  for (int i = 0; i < 3; ++i) {
-    image->spacing[i] = 1;
-    image->direction[4 * i] = 1;
-  }
-}
-
-void plc_parameters_defaults(plc_parameters* p) {
-  *p = {};
-  p->struct_size = sizeof *p;
-  p->iso = p->window_low = p->window_high = p->pad_value = NAN;
-  p->levels = -1;
-  p->reduction = plc::kRefinement;
-  p->init = PLC_INIT_BUBBLE;
-  p->bubbles[0] = p->bubbles[1] = p->bubbles[2] = 1;
-  p->curvature = 0.4;
-  p->spring = 0;
-  p->rest_length = PLC_REST_MEAN;
-  p->rest_length_value = 1.5;
-  p->force = PLC_FORCE_ISO;
-  p->attraction = 1;
-  p->gradient = 0.5;
-  p->gradient_tangent = 0;
-  p->gradient_bound = 0.1;
-  p->mass = 1;
-  p->damping = 0.5;
-  p->time_step = 1.5;
-  p->max_move = 0.4;
-  p->bound = PLC_BOUND_CLAMP;
-  p->anisotropy = PLC_ANISOTROPY_VOXEL;
-  p->epsilon = 5e-6;
-  p->max_iterations = 500;
-  p->late_bubbles = 1;
-  p->sleeping = 1;
-  p->slow_vertices = 1;
-  p->renumbering = 1;
-}
-
-void plc_extras_defaults(plc_extras* extras) {
-  *extras = {};
-  extras->struct_size = sizeof *extras;
-  extras->space = PLC_SPACE_LPS;
+plc_status plc_context_memory(const plc_context* context, int64_t* now, int64_t* peak) {
+  if (context == nullptr) return PLC_INVALID_ARGUMENT;
+  if (now != nullptr) *now = context->host->memory.now();
+  if (peak != nullptr) *peak = context->host->memory.peak();
+  return PLC_OK;
 }
 
 }  // extern "C"

@@ -5,13 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "engine/handles.h"
+
 namespace plc {
 
 namespace {
-
-Status bad(const std::string& line) {
-  return {ErrorCode::kInvalidArgument, line};
-}
 
 bool finite(const double* xyz) {
   return std::isfinite(xyz[0]) && std::isfinite(xyz[1]) && std::isfinite(xyz[2]);
@@ -19,40 +17,39 @@ bool finite(const double* xyz) {
 
 // What places with a radius have in common.
 Status check_ball(const std::string& name, const double* place, double radius) {
-  if (!finite(place)) return bad(name + ": its place is not finite");
+  if (!finite(place)) return bad_argument(name + ": its place is not finite");
   if (!(radius > 0) || !std::isfinite(radius)) {
-    return bad(name + ": radius " + std::to_string(radius) + " is not a positive length");
+    return bad_argument(name + ": radius " + std::to_string(radius) + " is not a positive length");
   }
   return {};
 }
 
 Status check_array(const char* name, const void* data, int64_t count) {
-  if (count < 0) return bad(std::string(name) + ": a negative count");
-  if (count > 0 && data == nullptr) return bad(std::string(name) + ": must not be NULL");
+  if (count < 0) return bad_argument(std::string(name) + ": a negative count");
+  if (count > 0 && data == nullptr) return bad_argument(std::string(name) + ": must not be NULL");
   return {};
 }
 
-Status check_mask(const plc_extras& extras, const plc_image& image) {
-  const plc_image* mask = extras.mask;
-  if (mask == nullptr) return bad("mask: none given for PLC_INIT_MASK");
-  if (mask->struct_size != sizeof *mask)
-    return bad("mask: struct_size is not that of this version");
-  if (mask->voxels == nullptr) return bad("mask: no voxels");
-  if (mask->type < PLC_U8 || mask->type > PLC_F32) return bad("mask: type is not a plc_voxel_type");
-  const auto dims = [](const plc_image& i) {
-    return std::to_string(i.dims[0]) + " x " + std::to_string(i.dims[1]) + " x " +
-           std::to_string(i.dims[2]);
-  };
-  if (!std::equal(mask->dims, mask->dims + 3, image.dims)) {
-    return bad("mask of " + dims(*mask) + " voxels: the image has " + dims(image));
+template <typename Dims>
+std::string dims_text(const Dims& dims) {
+  return std::to_string(dims[0]) + " x " + std::to_string(dims[1]) + " x " +
+         std::to_string(dims[2]);
+}
+
+// Its voxels are looked at when they are taken.
+Status check_mask(const plc_image* given, const VolumeView& image, plc_image& mask) {
+  if (given == nullptr) return bad_argument("mask: none given for PLC_INIT_MASK");
+  if (Status s = take_struct(given, plc_image_defaults, "mask", mask); !s.ok()) return s;
+  if (!std::equal(mask.dims, mask.dims + 3, image.dims.begin())) {
+    return bad_argument("mask of " + dims_text(mask.dims) + " voxels: the image has " +
+                        dims_text(image.dims));
   }
   return {};
 }
 
-Status check_start(const plc_extras& extras, const plc_parameters& p, const plc_image& image) {
-  if (p.init == PLC_INIT_MASK) return check_mask(extras, image);
-  if (p.init == PLC_INIT_SEEDS && extras.seed_count == 0) return bad("seeds: none given");
-  if (p.init == PLC_INIT_MESH && extras.mesh_face_count == 0) return bad("mesh: none given");
+Status check_start(const plc_extras& e, const plc_parameters& p) {
+  if (p.init == PLC_INIT_SEEDS && e.seed_count == 0) return bad_argument("seeds: none given");
+  if (p.init == PLC_INIT_MESH && e.mesh_face_count == 0) return bad_argument("mesh: none given");
   return {};
 }
 
@@ -60,14 +57,27 @@ constexpr double kMaxStrength = 1e6;
 
 }  // namespace
 
-Status check_extras(const plc_extras& e, const plc_parameters& p, const plc_image& image) {
-  if (e.space < PLC_SPACE_LPS || e.space > PLC_SPACE_VOXEL) return bad("space: not a plc_space");
+Status check_extras(const plc_extras* given, const plc_parameters& p, const VolumeView& image,
+                    plc_extras& e, plc_image& mask) {
+  plc_extras_defaults(&e);
+  if (given != nullptr) {
+    if (Status s = take_struct(given, plc_extras_defaults, "extras", e); !s.ok()) return s;
+  }
+  if (p.init == PLC_INIT_MASK) {
+    if (Status s = check_mask(e.mask, image, mask); !s.ok()) return s;
+    e.mask = &mask;
+  }
+  if (e.space < PLC_SPACE_LPS || e.space > PLC_SPACE_VOXEL)
+    return bad_argument("space: not a plc_space");
   for (const Status& s : {check_array("seeds", e.seeds, e.seed_count),
                           check_array("mesh vertices", e.mesh_xyz, e.mesh_vertex_count),
                           check_array("mesh faces", e.mesh_abc, e.mesh_face_count),
                           check_array("attachments", e.attachments, e.attachment_count),
-                          check_array("pins", e.pins, e.pin_count), check_start(e, p, image)}) {
+                          check_array("pins", e.pins, e.pin_count), check_start(e, p)}) {
     if (!s.ok()) return s;
+  }
+  if (e.mesh_vertex_count > int64_t{1} << 32U || e.mesh_face_count > int64_t{1} << 32U) {
+    return bad_argument("mesh: more than 2^32 vertices or faces");
   }
   for (int64_t i = 0; i < e.seed_count; ++i) {
     const std::string name = "seed " + std::to_string(i);
@@ -82,7 +92,8 @@ Status check_extras(const plc_extras& e, const plc_parameters& p, const plc_imag
     const plc_attachment& a = e.attachments[i];
     if (Status s = check_ball(name, a.place, a.radius); !s.ok()) return s;
     if (!(a.strength >= 0 && a.strength <= kMaxStrength)) {
-      return bad(name + ": strength " + std::to_string(a.strength) + " is not within 0 .. 1e6");
+      return bad_argument(name + ": strength " + std::to_string(a.strength) +
+                          " is not within 0 .. 1e6");
     }
   }
   return {};
@@ -111,17 +122,26 @@ void take_extras(const plc_extras& e, const Frame& frame, RecoverySpec& spec) {
     spec.user.pins.push_back({place(e.pins[i].place), static_cast<float>(e.pins[i].radius)});
   }
   if (spec.start.init != Init::kMesh) return;
-  const auto vertices = static_cast<size_t>(e.mesh_vertex_count);
-  spec.start.xyz.resize(3 * vertices);
-  for (size_t v = 0; v < 3 * vertices; v += 3) {
-    const auto p = to_voxel.point({e.mesh_xyz[v], e.mesh_xyz[v + 1], e.mesh_xyz[v + 2]});
-    std::copy(p.begin(), p.end(), spec.start.xyz.begin() + static_cast<std::ptrdiff_t>(v));
+  VoxelMesh mesh =
+      in_voxels(to_space, e.mesh_xyz, e.mesh_vertex_count, e.mesh_abc, e.mesh_face_count);
+  spec.start.xyz = std::move(mesh.xyz);
+  spec.start.abc = std::move(mesh.abc);
+}
+
+VoxelMesh in_voxels(const Affine& to_space, const double* xyz, int64_t vertex_count,
+                    const uint32_t* abc, int64_t face_count) {
+  const Affine to_voxel = to_space.inverse();
+  VoxelMesh mesh;
+  mesh.xyz.resize(3 * static_cast<size_t>(vertex_count));
+  for (size_t v = 0; v < mesh.xyz.size(); v += 3) {
+    const auto p = to_voxel.point({xyz[v], xyz[v + 1], xyz[v + 2]});
+    std::copy(p.begin(), p.end(), mesh.xyz.begin() + static_cast<std::ptrdiff_t>(v));
   }
-  spec.start.abc.assign(e.mesh_abc, e.mesh_abc + 3 * e.mesh_face_count);
-  if (!to_space.mirrors()) return;
-  for (size_t f = 0; f < spec.start.abc.size(); f += 3) {
-    std::swap(spec.start.abc[f + 1], spec.start.abc[f + 2]);
+  mesh.abc.assign(abc, abc + 3 * face_count);
+  if (to_space.mirrors()) {
+    for (size_t f = 0; f < mesh.abc.size(); f += 3) std::swap(mesh.abc[f + 1], mesh.abc[f + 2]);
   }
+  return mesh;
 }
 
 }  // namespace plc

@@ -10,14 +10,6 @@
 #include "engine/moments.h"
 #include "engine/surface_distance.h"
 
-namespace {
-
-plc::Status bad_argument(const char* message) {
-  return {plc::ErrorCode::kInvalidArgument, message};
-}
-
-}  // namespace
-
 extern "C" {
 
 plc_status plc_mesh_component_measures(plc_context* context, const double* xyz,
@@ -25,22 +17,21 @@ plc_status plc_mesh_component_measures(plc_context* context, const double* xyz,
                                        int64_t face_count, plc_component_measures* whole,
                                        plc_component_measures* components, int64_t capacity,
                                        int64_t* count) {
-  if (context == nullptr) return PLC_INVALID_ARGUMENT;
   return plc::guarded(context, [&]() -> plc::Status {
-    if (whole != nullptr && whole->struct_size != sizeof *whole) {
-      return bad_argument("whole: struct_size must be set");
+    if (whole != nullptr) {
+      if (plc::Status s = plc::check_output(whole, "whole"); !s.ok()) return s;
     }
     if (capacity < 0 || (capacity > 0 && components == nullptr)) {
-      return bad_argument("components: must not be NULL, capacity must not be negative");
+      return plc::bad_argument("components: must not be NULL, capacity must not be negative");
     }
-    if (count == nullptr) return bad_argument("count: must not be NULL");
+    if (count == nullptr) return plc::bad_argument("count: must not be NULL");
     plc::Status status =
-        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->schedule);
+        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->host->schedule);
     if (!status.ok()) return status;
     const plc::ShapeMeasures shape =
         plc::shape_measures(xyz, static_cast<size_t>(vertex_count), abc,
-                            static_cast<size_t>(face_count), context->schedule);
-    if (whole != nullptr) *whole = shape.whole;
+                            static_cast<size_t>(face_count), context->host->schedule);
+    if (whole != nullptr) plc::give_struct(shape.whole, whole);
     *count = static_cast<int64_t>(shape.components.size());
     std::copy_n(shape.components.begin(), std::min(capacity, *count), components);
     return {};
@@ -50,13 +41,13 @@ plc_status plc_mesh_component_measures(plc_context* context, const double* xyz,
 plc_status plc_mesh_curvature(plc_context* context, const double* xyz, int64_t vertex_count,
                               const uint32_t* abc, int64_t face_count, double* mean,
                               double* gaussian, double* area) {
-  if (context == nullptr) return PLC_INVALID_ARGUMENT;
   return plc::guarded(context, [&]() -> plc::Status {
     plc::Status status =
-        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->schedule);
+        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->host->schedule);
     if (!status.ok()) return status;
     plc::vertex_curvature(xyz, static_cast<size_t>(vertex_count), abc,
-                          static_cast<size_t>(face_count), context->schedule, mean, gaussian, area);
+                          static_cast<size_t>(face_count), context->host->schedule, mean, gaussian,
+                          area);
     return {};
   });
 }
@@ -64,16 +55,15 @@ plc_status plc_mesh_curvature(plc_context* context, const double* xyz, int64_t v
 plc_status plc_mesh_nearest_vertex(plc_context* context, const double* xyz, int64_t vertex_count,
                                    const uint32_t* abc, int64_t face_count, const double* point,
                                    int64_t* vertex) {
-  if (context == nullptr) return PLC_INVALID_ARGUMENT;
   return plc::guarded(context, [&]() -> plc::Status {
     if (point == nullptr || vertex == nullptr) {
-      return bad_argument("point, vertex: must not be NULL");
+      return plc::bad_argument("point, vertex: must not be NULL");
     }
     if (!std::all_of(point, point + 3, [](double x) { return std::isfinite(x); })) {
-      return bad_argument("point: expected finite numbers");
+      return plc::bad_argument("point: expected finite numbers");
     }
     plc::Status status =
-        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->schedule);
+        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->host->schedule);
     if (!status.ok()) return status;
     const size_t nearest = plc::nearest_vertex(xyz, static_cast<size_t>(vertex_count), abc,
                                                static_cast<size_t>(face_count), point);
@@ -85,11 +75,10 @@ plc_status plc_mesh_nearest_vertex(plc_context* context, const double* xyz, int6
 plc_status plc_mesh_geodesic(plc_context* context, const double* xyz, int64_t vertex_count,
                              const uint32_t* abc, int64_t face_count, int64_t source,
                              double* distance) {
-  if (context == nullptr) return PLC_INVALID_ARGUMENT;
   return plc::guarded(context, [&]() -> plc::Status {
-    if (distance == nullptr) return bad_argument("distance: must not be NULL");
+    if (distance == nullptr) return plc::bad_argument("distance: must not be NULL");
     plc::Status status =
-        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->schedule);
+        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->host->schedule);
     if (!status.ok()) return status;
     if (source < 0 || source >= vertex_count) {
       return {plc::ErrorCode::kInvalidArgument, "source: is vertex " + std::to_string(source) +
@@ -98,7 +87,7 @@ plc_status plc_mesh_geodesic(plc_context* context, const double* xyz, int64_t ve
     }
     plc::geodesic_distances(xyz, static_cast<size_t>(vertex_count), abc,
                             static_cast<size_t>(face_count), static_cast<uint32_t>(source),
-                            context->schedule, distance);
+                            context->host->schedule, distance);
     return {};
   });
 }
@@ -107,16 +96,15 @@ plc_status plc_mesh_distance(plc_context* context, const double* xyz, int64_t ve
                              const uint32_t* abc, int64_t face_count, const double* other_xyz,
                              int64_t other_vertex_count, const uint32_t* other_abc,
                              int64_t other_face_count, double* distance, plc_distances* summary) {
-  if (context == nullptr) return PLC_INVALID_ARGUMENT;
   return plc::guarded(context, [&]() -> plc::Status {
-    if (summary != nullptr && summary->struct_size != sizeof *summary) {
-      return bad_argument("summary: struct_size must be set");
+    if (summary != nullptr) {
+      if (plc::Status s = plc::check_output(summary, "summary"); !s.ok()) return s;
     }
     plc::Status status =
-        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->schedule);
+        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->host->schedule);
     if (!status.ok()) return status;
     status = plc::check_mesh_input(other_xyz, other_vertex_count, other_abc, other_face_count,
-                                   context->schedule);
+                                   context->host->schedule);
     if (!status.ok()) return {status.code(), "the other mesh: " + status.message()};
     if (other_face_count == 0) {
       return {plc::ErrorCode::kInvalidData, "the other mesh: has no face"};
@@ -125,8 +113,8 @@ plc_status plc_mesh_distance(plc_context* context, const double* xyz, int64_t ve
         {xyz, static_cast<size_t>(vertex_count), abc, static_cast<size_t>(face_count)},
         {other_xyz, static_cast<size_t>(other_vertex_count), other_abc,
          static_cast<size_t>(other_face_count)},
-        context->schedule, distance);
-    if (summary != nullptr) *summary = distances;
+        context->host->schedule, distance);
+    if (summary != nullptr) plc::give_struct(distances, summary);
     return {};
   });
 }

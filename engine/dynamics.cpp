@@ -130,8 +130,21 @@ Status Dynamics::step(const Guide& guide, Seconds& seconds, const Sleep* sleep,
   // In order, the user's force is called on the calling thread.
   schedule_.run_passes(passes(guide, seconds),
                        user_force || blocks_.size() * kRingLanes < kSerialBelow, after);
-  end_step();
+  if (status_.ok()) end_step();
   return status_;
+}
+
+void Dynamics::save(StateWriter& to) const {
+  to.add(energy_);
+  to.add(speed_of_fastest_);
+  to.add_all(laplacian_);
+}
+
+void Dynamics::restore(StateReader& from) {
+  from.read(energy_);
+  from.read(speed_of_fastest_);
+  from.read_all(laplacian_);
+  for (Buffer<Packed>& b : stage_) b = mesh_.packed;
 }
 
 std::vector<Pass> Dynamics::passes(const Guide& guide, Seconds& seconds) {
@@ -372,6 +385,7 @@ void Dynamics::hold_pinned(const Guide& guide) {
 }
 
 void Dynamics::move() {
+  if (!status_.ok()) return;
   for_tasks([&](size_t index, const Blocks& blocks) {
     movement_[index] = kernels::move(simd_, move_bound(), raw(mesh_.displacement),
                                      raw(std::as_const(rate_)), move_streams(), blocks);

@@ -7,6 +7,7 @@
 #include "engine/schedule.h"
 #include "engine/sleep.h"
 #include "engine/state_hash.h"
+#include "engine/state_io.h"
 #include "engine/statistics.h"
 #include "kernels/blocks.h"
 #include "kernels/guided_stage.h"
@@ -57,8 +58,8 @@ class Dynamics {
   Dynamics(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model);
 
   // Moves every vertex that does not sleep once (no sleep: all); displacement, velocity, normal and
-  // path of the mesh are written. Fails where the user's force does; the surface is then where it
-  // was, or somewhere on the way. `after`: as in Schedule::run_passes.
+  // path of the mesh are written. Fails where the user's force does; positions, velocities and
+  // paths are then as they were. `after`: as in Schedule::run_passes.
   Status step(const Guide& guide, Seconds& seconds, const Sleep* sleep = nullptr,
               const PassEnd& after = {});
   // Mean of m (dx . n / (delta dt))^2 / 2 over the vertices, of the last step.
@@ -67,6 +68,10 @@ class Dynamics {
   double speed() const { return speed_of_fastest_; }
   // Positions before the last step.
   const Buffer<Packed>& before() const { return stage_[0]; }
+  // What the next step reads beside the mesh: the Laplacians of blocks that sleep, of when they
+  // fell asleep; and energy and speed.
+  void save(StateWriter& to) const;
+  void restore(StateReader& from);
   // What it holds beside the mesh.
   void append_hashes(std::vector<PartHash>& hashes) const;
 

@@ -86,6 +86,20 @@ bool Evolution::embedded() {
   return meeting.empty();
 }
 
+void Evolution::save(StateWriter& to) const {
+  to.add(iteration_);
+  sleep_.save(to);
+  dynamics_.save(to);
+  resolution_.save(to);
+}
+
+void Evolution::restore(StateReader& from) {
+  from.read(iteration_);
+  sleep_.restore(from);
+  dynamics_.restore(from);
+  resolution_.restore(from);
+}
+
 std::vector<PartHash> Evolution::hashes() const {
   std::vector<PartHash> all = part_hashes(mesh_);
   dynamics_.append_hashes(all);

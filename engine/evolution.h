@@ -40,6 +40,10 @@ class Evolution {
   // The longest movement of the last iteration, in delta per time.
   double speed() const { return dynamics_.speed(); }
 
+  // Between two iterations; not the mesh, which is to be restored before.
+  void save(StateWriter& to) const;
+  void restore(StateReader& from);
+
   // For tests. Empty: nobody looks, which costs nothing.
   void set_observer(PassObserver observer) { observer_ = std::move(observer); }
   // Tells the observer; also of passes that are none of an iteration.

@@ -1,7 +1,9 @@
 // What the opaque handles of the C API hold, and how failures cross its boundary.
 #pragma once
 #include <array>
+#include <cstring>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 #include <vector>
@@ -12,28 +14,75 @@
 #include "engine/recovery.h"
 #include "engine/schedule.h"
 #include "kernels/simd.h"
+#include "pyramid/memory.h"
 #include "pyramid/status.h"
+#include "pyramid/volume.h"
+
+namespace plc {
+
+// What a context and all that is made with it share: the last of them frees it.
+struct Host {
+  Host(const Memory::Hooks& hooks, int64_t limit, const Threads& threads, SimdTarget target)
+      : memory(hooks, limit), schedule(threads), simd(target) {}
+  // To whoever listens.
+  void log(plc_log_level level, const std::string& line) const {
+    if (log_fn != nullptr) log_fn(level, line.c_str(), log_user);
+  }
+
+  Memory memory;
+  Schedule schedule;
+  SimdTarget simd;
+  plc_log_fn log_fn = nullptr;
+  void* log_user = nullptr;
+};
+
+// In each of these the host comes first: it goes last, and with it the memory of the rest.
+
+struct VolumeData {
+  std::shared_ptr<Host> host;
+  VolumeView view;
+  Frame frame;
+  Buffer<uint8_t> own;  // where the voxels are not borrowed
+};
+
+struct PyramidData {
+  std::shared_ptr<Host> host;
+  std::shared_ptr<const VolumeData> volume;
+  plc_parameters given{}, parameters{};  // as given, and as derived
+  VoxelRange range;
+  Buffer<float> feature;  // what I_0 then is
+  Pyramid images;
+  std::vector<double> isos;   // normalised; NAN: none
+  double seconds = 0;         // of all this
+  double seconds_images = 0;  // of it, build_pyramid
+};
+
+}  // namespace plc
 
 struct plc_context {
-  plc_context(int threads, plc::SimdTarget target) : schedule(threads), simd(target) {}
-  plc::Schedule schedule;
-  plc::SimdTarget simd;
+  std::shared_ptr<plc::Host> host;
   std::string message;
 };
 
+struct plc_volume {
+  std::shared_ptr<const plc::VolumeData> data;
+};
+
+struct plc_pyramid {
+  std::shared_ptr<const plc::PyramidData> data;
+};
+
 struct plc_surface {
-  plc::Mesh mesh;  // ids without gaps, in Morton order
+  std::shared_ptr<plc::Host> host;
+  plc::Mesh mesh;
   plc::MeshSpace space;
   plc::Frame frame;
   plc_parameters parameters{};
   plc::VoxelRange range;
   std::vector<plc::LevelRecord> records;
-  std::vector<std::array<int64_t, 3>> level_dims;  // as records
+  std::vector<std::array<int64_t, 3>> level_dims;  // of the pyramid, from the coarsest on
   std::vector<double> level_units;                 // mm
-  std::vector<double> level_isos;                  // image units
-  double seconds_pyramid = 0;                      // everything before the evolution
-  double seconds_images = 0;                       // of these, build_pyramid
-  double seconds_evolution = 0;
+  plc_seconds seconds{};
 };
 
 namespace plc {
@@ -43,16 +92,73 @@ inline plc_status report(plc_context* context, const Status& status) {
   return static_cast<plc_status>(status.code());
 }
 
-// Runs body, which returns a Status; no exception gets past it.
+// Runs body, which returns a Status, in the memory of the context; no exception gets past it.
 template <typename Body>
 plc_status guarded(plc_context* context, Body&& body) {
+  if (context == nullptr) return PLC_INVALID_ARGUMENT;
+  const std::shared_ptr<Host> host = context->host;
+  const MemoryScope scope(host->memory);
   try {
     return report(context, body());
   } catch (const std::bad_alloc&) {
-    return report(context, {ErrorCode::kOutOfMemory, "out of memory"});
-  } catch (const std::exception& e) {
-    return report(context, {ErrorCode::kInternal, std::string("internal error: ") + e.what()});
+    context->message = "out of memory";
+    return PLC_OUT_OF_MEMORY;
+  } catch (...) {
+    context->message = "internal error";
+    return PLC_INTERNAL;
   }
 }
+
+// Of a struct that a host fills in: what its version of the header has, the rest at its default.
+template <typename T>
+Status take_struct(const T* from, void (*defaults)(T*), const char* name, T& to) {
+  if (from == nullptr) return bad_argument(std::string(name) + ": must not be NULL");
+  size_t size = from->struct_size;
+  if (size < sizeof size || size > sizeof to) {
+    return bad_argument(std::string(name) + ": struct_size " + std::to_string(size) +
+                        " is not that of this version or an earlier one");
+  }
+  defaults(&to);
+  std::memcpy(static_cast<void*>(&to), from, size);
+  to.struct_size = sizeof to;
+  return {};
+}
+
+// Of a struct that a host has filled in for it: as much as its version of the header has.
+template <typename T>
+Status check_output(const T* to, const char* name) {
+  if (to == nullptr) return bad_argument(std::string(name) + ": must not be NULL");
+  const size_t size = to->struct_size;
+  if (size < sizeof size || size > sizeof *to) {
+    return bad_argument(std::string(name) + ": struct_size " + std::to_string(size) +
+                        " is not that of this version or an earlier one");
+  }
+  return {};
+}
+template <typename T>
+void give_struct(const T& value, T* to) {
+  const size_t size = to->struct_size;
+  std::memcpy(static_cast<void*>(to), &value, size);
+  to->struct_size = size;
+}
+
+// Room for `count` values, of which there is capacity.
+inline Status check_room(const char* name, const void* data, int64_t capacity, int64_t count) {
+  if (capacity < count) {
+    return bad_argument(std::string(name) + ": room for " + std::to_string(capacity) +
+                        ", there are " + std::to_string(count));
+  }
+  if (data == nullptr && count > 0) return bad_argument(std::string(name) + ": must not be NULL");
+  return {};
+}
+
+// Of an image but for its voxels: what tells where it lies.
+Status check_frame(const plc_image& image);
+Frame frame_of(const plc_image& image);
+// The voxels of an image, by default the caller's; `own` gets them where they are not dense, or are
+// to be copied.
+Status take_voxels(const char* name, const plc_image& image, bool copy, const Executor& executor,
+                   VolumeView& view, Buffer<uint8_t>& own);
+std::shared_ptr<VolumeData> new_volume(const std::shared_ptr<Host>& host);
 
 }  // namespace plc

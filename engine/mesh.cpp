@@ -279,6 +279,12 @@ std::vector<uint32_t> Mesh::faces() const {
   return out;
 }
 
+Mesh Mesh::copy() const {
+  Mesh to(*this);
+  to.refresh_view();
+  return to;
+}
+
 uint64_t Mesh::bytes() const {
   const auto of = [](const auto& b) { return b.capacity() * sizeof(b[0]); };
   const auto of3 = [&](const Streams3& s) { return of(s.x) + of(s.y) + of(s.z); };

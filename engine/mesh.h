@@ -12,6 +12,9 @@
 
 namespace plc {
 
+class StateReader;
+class StateWriter;
+
 // Three float streams of one vector quantity, 12 bytes per vertex.
 struct Streams3 {
   Buffer<float> x, y, z;
@@ -44,7 +47,7 @@ struct Streams3 {
 class Mesh {
  public:
   Mesh() = default;
-  // No copies: their view would be of the original's rings.
+  // Copies are made by copy() alone: their view is of their own rings.
   Mesh(Mesh&&) = default;
   Mesh& operator=(Mesh&&) = default;
 
@@ -108,8 +111,18 @@ class Mesh {
   // Triples (v, r[i], r[i+1]) with v the smallest id, in order of v, then of the ring.
   std::vector<uint32_t> faces() const;
   uint64_t bytes() const;
+  Mesh copy() const;
+
+  // All of it but the places of tails in their arena (mesh_state.cpp). restore() replaces what is
+  // there; false where what is read is no mesh that holds its invariants: it is then of no use.
+  void save(StateWriter& to) const;
+  bool restore(StateReader& from);
 
  private:
+  Mesh(const Mesh&) = default;
+  template <typename Self, typename Visit>
+  static void visit_streams(Self& mesh, const Visit& visit);
+  bool restore_rings(StateReader& from);
   void grow(uint32_t slots);
   void carry_rings(const std::vector<uint32_t>& order, Mesh& to, const Executor& executor) const;
   void set_valence(uint32_t v, uint32_t valence);

@@ -4,18 +4,36 @@
  * "Deformable Meshes with Automated Topology Changes for Coarse-to-fine 3D Surface Extraction";
  * numbers in parentheses are its equations, section numbers are its sections.
  *
- * - Every function that can fail returns a plc_status; plc_context_message() then says in one line
- *   what was wrong. No function exits, prints or throws.
- * - A context may be used by one thread at a time; different contexts are independent.
- * - Structs start with struct_size: fill them with their _defaults function, then change fields.
- * - Handles are freed with their _destroy function, which takes NULL.
- * - Results are the same bits for any thread count and any SIMD target.
+ *   plc_extract                                              an image to a surface, in one call
+ *   plc_volume_create -> plc_pyramid_create -> plc_run_...   the same in steps of any size
+ *
+ * Errors    Every function that can fail returns a plc_status; plc_context_message() then says in
+ *           one line what was wrong. No function exits, prints, throws, or changes the locale, the
+ *           floating-point environment or signals. NULL where it must not be is
+ *           PLC_INVALID_ARGUMENT. After a failed call its outputs are unchanged or, where they are
+ *           handles, NULL; every handle can still be used or destroyed.
+ * Threads   A context, and what was made with it, may be used by one thread at a time; different
+ *           contexts are independent and share nothing. Callbacks are made on the thread that
+ *           called, but for those of plc_context_options, which say so. A callback may call any
+ *           function with handles of another context, and of its own only those that it is told to.
+ * Structs   start with struct_size: fill them with their _defaults function, then change fields.
+ * For structs that are only written set struct_size = sizeof. A library newer than the header that
+ * a host was built with takes what it does not get at its default. Handles   are freed with their
+ * _destroy function, which takes NULL, in any order: what a handle needs of others it keeps alive.
+ * What a host lends - voxels, allocator, threads - must outlive the handles that use it. Bits
+ * Results are the same bits for any number of threads, any SIMD target and any allocator.
  */
 #ifndef PLC_PELLICLE_H
 #define PLC_PELLICLE_H
 
 #include <stddef.h>
 #include <stdint.h>
+
+#define PLC_VERSION_MAJOR 0
+#define PLC_VERSION_MINOR 2
+#define PLC_VERSION_PATCH 0
+/* Comparable: later versions are larger. */
+#define PLC_VERSION (PLC_VERSION_MAJOR * 1000000 + PLC_VERSION_MINOR * 1000 + PLC_VERSION_PATCH)
 
 #if defined(_WIN32)
 #define PLC_API
@@ -59,47 +77,110 @@ typedef enum plc_space {
 } plc_space;
 
 typedef struct plc_context plc_context;
+typedef struct plc_volume plc_volume;
+typedef struct plc_pyramid plc_pyramid;
+typedef struct plc_run plc_run;
 typedef struct plc_surface plc_surface;
 
-/* "MAJOR.MINOR.PATCH"; static storage. */
+/* Of the library that is running, which may be another than that of this header:
+ * "MAJOR.MINOR.PATCH", static storage, and as PLC_VERSION. */
 PLC_API const char* plc_version_string(void);
+PLC_API int plc_version(void);
 
 /* ---- context ---------------------------------------------------------------------------- */
 
+/* One task of a parallel loop: returns when it is done, never fails. */
+typedef void (*plc_task_fn)(size_t task, void* data);
+/* The host's threads: calls task(0, data) .. task(tasks - 1, data), each once, in any order, on any
+ * threads, the calling one included, and returns when all have returned. Not called by a task. */
+typedef void (*plc_parallel_for_fn)(size_t tasks, plc_task_fn task, void* data, void* user);
+
+/* The host's memory, called on any thread at any time. allocate: NULL where there is none;
+ * alignment is a power of two, 8 .. 4096. release: what allocate has given, size and alignment as
+ * they were. */
+typedef void* (*plc_allocate_fn)(size_t size, size_t alignment, void* user);
+typedef void (*plc_release_fn)(void* data, size_t size, size_t alignment, void* user);
+
+typedef enum plc_log_level {
+  PLC_LOG_WARNING = 1, /* the result is valid, and perhaps not what was wanted */
+  PLC_LOG_INFO = 2     /* what the engine has derived, and how it gets on, level by level */
+} plc_log_level;
+/* A line without its end; valid during the call. On the thread that called the engine. */
+typedef void (*plc_log_fn)(plc_log_level level, const char* line, void* user);
+
 typedef struct plc_context_options {
   size_t struct_size;
-  int threads;   /* worker threads, 1 .. 1024; 0: one per core */
-  plc_simd simd; /* must be available on this machine */
+  int threads; /* 1 .. 1024: at most so many; 1 starts none; 0: those of the caller's oneTBB arena,
+                  by default one per core. Ignored with parallel_for */
+  plc_simd simd;                    /* must be available on this machine */
+  plc_parallel_for_fn parallel_for; /* NULL: oneTBB */
+  void* parallel_for_user;
+  plc_allocate_fn allocate; /* images, vertices and all else that grows with them; NULL: mimalloc
+                               where the system has it, else the C library. Never the host's malloc
+                               replaced. Small and fixed-size objects come from operator new */
+  plc_release_fn release;   /* NULL just where allocate is */
+  void* allocator_user;
+  int64_t memory_limit; /* of what allocate has given at a time, bytes; 0: none. A call that would
+                           go beyond fails with PLC_OUT_OF_MEMORY */
+  plc_log_fn log;       /* NULL: nobody listens */
+  void* log_user;
 } plc_context_options;
 
+/* All threads, the best SIMD target, no hooks, no limit. */
 PLC_API void plc_context_options_defaults(plc_context_options* options);
 /* options may be NULL (defaults). On failure *context is NULL and, where error is not NULL, a line
  * of at most error_size - 1 characters is written to it. */
 PLC_API plc_status plc_context_create(const plc_context_options* options, plc_context** context,
                                       char* error, size_t error_size);
 PLC_API void plc_context_destroy(plc_context* context);
-/* The message of the last call on this context that failed; "" when none. Valid until the next
- * call on the context. */
+/* The message of the last call on this context that failed; "" when none, or for NULL. Valid until
+ * the next call on the context. */
 PLC_API const char* plc_context_message(const plc_context* context);
-/* The number of threads and the SIMD target in use ("scalar", "sse4", "avx2", "avx512"). */
+/* The number of threads that loops may run on (0 with parallel_for: the host knows) and the SIMD
+ * target in use ("scalar", "sse4", "avx2", "avx512"). 0 and "" for NULL. */
 PLC_API int plc_context_threads(const plc_context* context);
 PLC_API const char* plc_context_simd(const plc_context* context);
+/* Bytes that are allocated now, and the most there have been, by this context and what was made
+ * with it; allocator or not. Both may be NULL. */
+PLC_API plc_status plc_context_memory(const plc_context* context, int64_t* now, int64_t* peak);
 
-/* ---- extraction ------------------------------------------------------------------------- */
+/* ---- images ----------------------------------------------------------------------------- */
 
 /* An image in memory; borrowed for the duration of a call. */
 typedef struct plc_image {
   size_t struct_size;
   plc_voxel_type type;
-  const void* voxels;  /* dims[0] * dims[1] * dims[2] values, x fastest */
-  int64_t dims[3];     /* each >= 2 */
-  double spacing[3];   /* mm between voxel centres, > 0 */
-  double origin[3];    /* LPS position of the centre of voxel (0,0,0), mm */
+  const void* voxels; /* dims[0] * dims[1] * dims[2] values, aligned as their type */
+  int64_t dims[3];    /* each >= 2 */
+  int64_t strides[3]; /* bytes from a voxel to the next one on each axis, multiples of its size, may
+                         be negative or leave gaps; all 0: x fastest, no gaps, which is the only
+                         layout that needs no copy */
+  double spacing[3];  /* mm between voxel centres, > 0 */
+  double origin[3];   /* LPS position of the centre of voxel (0,0,0), mm */
   double direction[9]; /* row-major, columns are the unit axes of the image in LPS (as ITK) */
 } plc_image;
 
-/* Spacing 1, origin 0, identity direction, no voxels. */
+/* Spacing 1, origin 0, identity direction, no gaps, no voxels. */
 PLC_API void plc_image_defaults(plc_image* image);
+
+/* Whether a volume has voxels of its own, or refers to the caller's, which must then neither change
+ * nor go while the volume, a pyramid or a run of it is there. */
+typedef enum plc_ownership { PLC_COPY = 0, PLC_BORROW = 1 } plc_ownership;
+
+/* PLC_INVALID_DATA: dims below 2 or of 2^62 bytes or more, spacing that is not positive, an origin
+ * that is not finite, singular directions. NaN voxels are told by plc_pyramid_create. PLC_BORROW
+ * with strides copies. */
+PLC_API plc_status plc_volume_create(plc_context* context, const plc_image* image,
+                                     plc_ownership ownership, plc_volume** volume);
+PLC_API void plc_volume_destroy(plc_volume* volume);
+/* Smallest and largest voxel; PLC_INVALID_DATA where some are NaN or infinite. */
+PLC_API plc_status plc_volume_range(plc_context* context, const plc_volume* volume, double* low,
+                                    double* high);
+/* The image as the volume holds it: voxels live as long as the volume, strides are 0. */
+PLC_API plc_status plc_volume_image(plc_context* context, const plc_volume* volume,
+                                    plc_image* image);
+
+/* ---- parameters ------------------------------------------------------------------------- */
 
 typedef enum plc_rest_length {
   PLC_REST_ZERO = 0, /* minimise the area (membrane) */
@@ -283,26 +364,147 @@ typedef struct plc_extras {
 /* Nothing, PLC_SPACE_LPS. */
 PLC_API void plc_extras_defaults(plc_extras* extras);
 
+/* ---- extraction ------------------------------------------------------------------------- */
+
 /* PyramidalRecoverShape (fig. 13). extras may be NULL. On any status but PLC_OK *surface is NULL.
- * The surface is closed, oriented outward and free of self-intersections. */
+ * The surface is closed, oriented outward and free of self-intersections. Levels of the pyramid are
+ * freed as the surface leaves them: the least memory. */
 PLC_API plc_status plc_extract(plc_context* context, const plc_image* image,
                                const plc_parameters* parameters, const plc_extras* extras,
                                plc_surface** surface);
 
+/* The images I_0 .. I_levels of 4.2, normalised by the window, in the reduction, and the iso-values
+ * pi_I on them. Reads of the parameters all up to `reduction`, and derives what they leave open.
+ * The volume may be destroyed afterwards; where it borrows, its voxels must stay. May be used for
+ * any number of runs, of any contexts, at the same time. PLC_INVALID_DATA: NaN or infinite voxels,
+ * an image too small for the levels or of 2^31 voxels or more on a padded level, ... */
+PLC_API plc_status plc_pyramid_create(plc_context* context, const plc_volume* volume,
+                                      const plc_parameters* parameters, plc_pyramid** pyramid);
+PLC_API void plc_pyramid_destroy(plc_pyramid* pyramid);
+/* The parameters as given, with everything that was derived from the image filled in. */
+PLC_API plc_status plc_pyramid_parameters(plc_context* context, const plc_pyramid* pyramid,
+                                          plc_parameters* parameters);
+
+typedef struct plc_pyramid_level {
+  size_t struct_size;
+  int64_t dims[3];   /* of I_h, padding included */
+  double spacing[3]; /* mm */
+  double origin[3];  /* LPS position of the centre of voxel (0,0,0) of I_h, mm; directions are those
+                        of the image */
+  double unit;       /* U_h, mm */
+  double iso;        /* pi_I of this level, in the image's units; NAN: not set */
+} plc_pyramid_level;
+
+/* Levels above I_0, so that 0 <= h <= it; -1 for NULL. */
+PLC_API int plc_pyramid_levels(const plc_pyramid* pyramid);
+PLC_API plc_status plc_pyramid_level_info(plc_context* context, const plc_pyramid* pyramid, int h,
+                                          plc_pyramid_level* level);
+/* The values of I_h in [0,1], x fastest. capacity: how many values there is room for, at least
+ * dims[0] * dims[1] * dims[2] of the level. */
+PLC_API plc_status plc_pyramid_values(plc_context* context, const plc_pyramid* pyramid, int h,
+                                      float* values, int64_t capacity);
+
+/* ---- runs ------------------------------------------------------------------------------- */
+
+/* An evolution in progress, for hosts that want to look at the surface, save it, or stop between
+ * any two iterations. Exactly plc_extract, in as many calls as one likes.
+ *
+ * parameters: those that the pyramid was made with, or plc_pyramid_parameters() of it; what the
+ * pyramid does not read may differ. extras may be NULL; its callbacks are made during the calls
+ * below, and their user pointers are kept; all else of it is copied. The pyramid may be destroyed.
+ * The run holds the initial surface (3.6) of the coarsest level that shows the object.
+ *
+ * A call that fails with PLC_CANCELLED leaves the run between two iterations: it can go on. After
+ * any other failure the run has ended without a result: its calls fail with PLC_INVALID_ARGUMENT
+ * until it is destroyed. */
+PLC_API plc_status plc_run_create(plc_context* context, const plc_pyramid* pyramid,
+                                  const plc_parameters* parameters, const plc_extras* extras,
+                                  plc_run** run);
+PLC_API void plc_run_destroy(plc_run* run);
+
+typedef enum plc_amount {
+  PLC_ONE_ITERATION = 0, /* procedure Evolution, figure 9 */
+  PLC_ONE_LEVEL = 1,     /* to the end of the level, RecoverShape, figure 12 */
+  PLC_ALL_LEVELS = 2     /* to the end, PyramidalRecoverShape, figure 13 */
+} plc_amount;
+
+typedef struct plc_run_state {
+  size_t struct_size;
+  int done;           /* 1: I_0 has been left, or the level callback has said PLC_VERDICT_STOP */
+  int between_levels; /* 1: the level below has come to its end, the next call starts the next one,
+                         or there is none */
+  plc_progress progress; /* of the last iteration; zeros before the first. Its seconds are those
+                            spent within calls on this run, or before it was saved */
+} plc_run_state;
+
+/* Goes on until the amount is done, or the run is. state may be NULL. A run that is done stays so:
+ * PLC_OK. Callbacks may not use the run. */
+PLC_API plc_status plc_run_advance(plc_context* context, plc_run* run, plc_amount amount,
+                                   plc_run_state* state);
+/* The surface as it is now, a copy, with the levels so far: closed, oriented and free of
+ * self-intersections after every iteration. Where the run is done, what plc_extract gives. */
+PLC_API plc_status plc_run_surface(plc_context* context, const plc_run* run, plc_surface** surface);
+
+/* The state between two iterations, as bytes that any context of this version of the library on a
+ * machine of this byte order takes, whatever its threads and SIMD target. *size: of the state;
+ * written in any case but an error. state: room for capacity bytes, nothing is written where that
+ * is too little, which is no error where state is NULL (capacity 0) and else PLC_INVALID_ARGUMENT.
+ * Neither image nor callbacks are in it; seeds, mesh, mask, attachments and pins are not either. */
+PLC_API plc_status plc_run_save(plc_context* context, const plc_run* run, void* state,
+                                size_t capacity, size_t* size);
+/* A run that goes on from a saved state, with the bits that the saved one would have gone on to.
+ * pyramid, parameters and extras: equal to those of the saved run, callbacks aside; the mask is
+ * needed where init is PLC_INIT_MASK. PLC_INVALID_DATA where the bytes are no state of a run, of
+ * another version, truncated or altered, or of another pyramid, parameters or extras. */
+PLC_API plc_status plc_run_restore(plc_context* context, const plc_pyramid* pyramid,
+                                   const plc_parameters* parameters, const plc_extras* extras,
+                                   const void* state, size_t size, plc_run** run);
+
 /* ---- surface ---------------------------------------------------------------------------- */
 
+/* Functions of a surface may be called by several threads at the same time, with a context each. */
 PLC_API void plc_surface_destroy(plc_surface* surface);
+
+/* A mesh from elsewhere: closed, oriented, free of self-intersections, else PLC_INVALID_DATA and a
+ * message that tells what is wrong and where. xyz: 3 * vertex_count values in `space`; abc: 3 *
+ * face_count indices, counter-clockwise seen from outside in it. image: where the mesh lies - its
+ * dims and voxels are not read; NULL: spacing 1, origin 0, identity. Coordinates are rounded to
+ * floats of voxels; vertices without a face are dropped, others keep their order; the surface has
+ * no levels. As the start of a run: PLC_INIT_MESH. */
+PLC_API plc_status plc_surface_create(plc_context* context, plc_space space, const plc_image* image,
+                                      const double* xyz, int64_t vertex_count, const uint32_t* abc,
+                                      int64_t face_count, plc_surface** surface);
+
+/* 0 for NULL. */
 PLC_API int64_t plc_surface_vertex_count(const plc_surface* surface);
 PLC_API int64_t plc_surface_face_count(const plc_surface* surface);
-/* xyz: 3 * vertex_count floats. Vertices are in the engine's canonical order. */
-PLC_API void plc_surface_positions(const plc_surface* surface, plc_space space, float* xyz);
+/* xyz: 3 * vertex_count floats. capacity, here and below: how many vertices or faces there is room
+ * for; PLC_INVALID_ARGUMENT where there are more. Vertices are in the engine's canonical order. */
+PLC_API plc_status plc_surface_positions(plc_context* context, const plc_surface* surface,
+                                         plc_space space, float* xyz, int64_t capacity);
 /* abc: 3 * face_count indices, counter-clockwise seen from outside in the given space. */
-PLC_API void plc_surface_faces(const plc_surface* surface, plc_space space, uint32_t* abc);
+PLC_API plc_status plc_surface_faces(plc_context* context, const plc_surface* surface,
+                                     plc_space space, uint32_t* abc, int64_t capacity);
 /* xyz: 3 * vertex_count floats, unit normals, outward. */
-PLC_API void plc_surface_normals(const plc_surface* surface, plc_space space, float* xyz);
+PLC_API plc_status plc_surface_normals(plc_context* context, const plc_surface* surface,
+                                       plc_space space, float* xyz, int64_t capacity);
+
+typedef enum plc_scalar {
+  PLC_SCALAR_MEAN_CURVATURE = 0,     /* as plc_mesh_curvature, of the mesh in the space */
+  PLC_SCALAR_GAUSSIAN_CURVATURE = 1, /* the same */
+  PLC_SCALAR_AREA = 2,               /* the mixed area of the vertex, the same */
+  PLC_SCALAR_VALENCE = 3,            /* number of neighbours */
+  PLC_SCALAR_MOVEMENT = 4 /* of the last iteration along the normal, in delta: where it is not small
+                             the surface has not come to rest. 0 of a mesh from elsewhere */
+} plc_scalar;
+/* values: vertex_count floats; NAN as plc_mesh_curvature. */
+PLC_API plc_status plc_surface_scalars(plc_context* context, const plc_surface* surface,
+                                       plc_space space, plc_scalar scalar, float* values,
+                                       int64_t capacity);
 /* 64-bit FNV-1a over, in this order: the number of vertices (u64), the bits of the positions in
  * the engine's mesh space (x, y, z of vertex 0, 1, ...: three u32 each), then each vertex's valence
- * (u32) and ring (u32 each, from its smallest neighbour on, counter-clockwise); little endian. */
+ * (u32) and ring (u32 each, from its smallest neighbour on, counter-clockwise); little endian. 0
+ * for NULL. */
 PLC_API uint64_t plc_surface_hash(const plc_surface* surface);
 
 /* What a mesh is: of the whole, over all components. */
@@ -317,6 +519,10 @@ typedef struct plc_measures {
 } plc_measures;
 PLC_API plc_status plc_surface_measure(plc_context* context, const plc_surface* surface,
                                        plc_space space, plc_measures* measures);
+/* See plc_check_mesh; in mm of patient space. */
+typedef struct plc_check plc_check;
+PLC_API plc_status plc_surface_check(plc_context* context, const plc_surface* surface,
+                                     plc_check* check);
 
 /* How the surface came to be, level by level. */
 struct plc_level_report {
@@ -339,22 +545,29 @@ struct plc_level_report {
   int64_t moves;  /* of single vertices; those that sleep are left out, in blocks of 16 */
   int64_t checks; /* of single vertices' constraints after a movement (3.6, slow vertices) */
 };
-/* 0 .. plc_surface_level_count - 1, from coarse to fine. */
+/* index: 0 .. plc_surface_level_count - 1, from coarse to fine. 0 levels for NULL. */
 PLC_API int plc_surface_level_count(const plc_surface* surface);
-PLC_API plc_status plc_surface_level(const plc_surface* surface, int index,
+PLC_API plc_status plc_surface_level(plc_context* context, const plc_surface* surface, int index,
                                      plc_level_report* report);
-/* Seconds of everything before the evolution - range, window, pyramid, iso-values - and of the
- * evolution; the parameters as used, with everything that was derived filled in. */
-PLC_API void plc_surface_seconds(const plc_surface* surface, double* pyramid, double* evolution);
-/* Of the former, those of the pyramid's images alone. */
-PLC_API double plc_surface_image_seconds(const plc_surface* surface);
-PLC_API void plc_surface_parameters(const plc_surface* surface, plc_parameters* parameters);
+/* Where the time of an extraction went, seconds. */
+typedef struct plc_seconds {
+  size_t struct_size;
+  double preparation; /* all before the evolution: range, window, pyramid, iso-values */
+  double images;      /* of it: the images of the pyramid alone */
+  double evolution;
+} plc_seconds;
+PLC_API plc_status plc_surface_seconds(plc_context* context, const plc_surface* surface,
+                                       plc_seconds* seconds);
+/* The parameters as used, with everything that was derived filled in. */
+PLC_API plc_status plc_surface_parameters(plc_context* context, const plc_surface* surface,
+                                          plc_parameters* parameters);
 /* Smallest and largest voxel of the input. */
-PLC_API void plc_surface_input_range(const plc_surface* surface, double* low, double* high);
+PLC_API plc_status plc_surface_input_range(plc_context* context, const plc_surface* surface,
+                                           double* low, double* high);
 
 /* ---- checking any mesh ------------------------------------------------------------------ */
 
-typedef struct plc_check {
+struct plc_check {
   size_t struct_size;
   plc_measures measures;
   int valid;    /* closed, manifold, oriented, outward, no degenerate face, no self-intersection */
@@ -372,7 +585,7 @@ typedef struct plc_check {
   double edge_min, edge_mean, edge_max;
   double min_angle, max_angle; /* degrees */
   int32_t valence_min, valence_max;
-} plc_check;
+};
 
 /* xyz: 3 * vertex_count finite values; abc: 3 * face_count indices below vertex_count. Predicates
  * are exact. PLC_INVALID_DATA where an index or a value is out of range; an invalid mesh is PLC_OK

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/dynamics.h"
+#include "engine/evolution.h"
 #include "engine/late_bubbles.h"
 #include "engine/level_start.h"
 #include "engine/mesh.h"
@@ -12,7 +13,9 @@
 #include "engine/pass_observer.h"
 #include "engine/resolution.h"
 #include "engine/schedule.h"
+#include "engine/state_io.h"
 #include "engine/statistics.h"
+#include "engine/voxel_set.h"
 #include "pyramid/pyramid.h"
 #include "pyramid/status.h"
 
@@ -63,24 +66,117 @@ struct RecoveryProgress {
 };
 
 struct RecoveryHooks {
-  // After every iteration; returns false to cancel. May be empty.
+  // After every iteration; returns false to stop there. May be empty.
   std::function<bool(const RecoveryProgress&)> progress;
   // At the end of every level that holds a surface, which is then in mesh_space() of that level,
   // without gaps in the ids. kMore: up to max_iterations more. kStop: the recovery ends here. May
   // be empty.
   std::function<LevelVerdict(const LevelRecord&)> level;
+  // When a level has been left, whether it holds a surface or not. May be empty.
+  std::function<void(const LevelRecord&)> left{};
   // After every pass. For tests; may be empty.
   PassObserver pass{};
 };
 
-// Evolves `mesh` from the coarsest level of the pyramid to I_0; records gets one entry per level,
-// coarse to fine. A level that holds no surface has 0 vertices in its record; the next finer one
-// then starts anew. The result is closed, oriented, free of self-intersections and in mesh_space()
-// of the last level of the records. Errors: those of start_surface(), kInvalidData (no level holds
-// a surface), kCancelled, kOutOfMemory, what the user's force returns.
-//
-// The pyramid is given away: a level's values are released when the recovery goes on to the next
-// finer one, so that on I_0, which is borrowed, none are left.
+// How far a recovery goes on in one call.
+enum class Amount { kIteration, kLevel, kAll };
+
+// The surface's way through the pyramid, which may be left and saved between any two iterations.
+class Recovery {
+ public:
+  // Evolves `mesh`, which is empty, from the coarsest level of the pyramid to I_0; records gets
+  // one entry per level, coarse to fine. Both must outlive it, as must the schedule. The pyramid is
+  // given away: a level's values are released when the recovery goes on to the next finer one, so
+  // that on I_0, which is borrowed, none are left.
+  Recovery(Pyramid pyramid, RecoverySpec spec, const Schedule& schedule, SimdTarget simd,
+           RecoveryHooks hooks, Mesh& mesh, std::vector<LevelRecord>& records);
+
+  // Up to the initial surface of the coarsest level that shows the object. A level that holds no
+  // surface has 0 vertices in its record; the next finer one then starts anew. Errors: those of
+  // start_surface(), kInvalidData (no level holds a surface), kOutOfMemory.
+  Status start();
+  // Goes on, after start(). The mesh is in space() and, where the level has come to its end or all
+  // is done, without gaps in its ids; closed, oriented, free of self-intersections. kCancelled, by
+  // the progress hook or the user's force: it can go on. After any other error it can not:
+  // kInvalidData (no level holds a surface), kOutOfMemory, what the user's force returns.
+  Status advance(Amount amount);
+  bool done() const { return done_; }
+  // The last level has come to its end.
+  bool between_levels() const { return done_ || phase_ == Phase::kStart; }
+  const MeshSpace& space() const { return space_; }
+  // Of the last iteration.
+  const RecoveryProgress& progress() const { return progress_; }
+
+  // The state between two calls, mesh and records included, pyramid, spec and hooks not. restore():
+  // instead of start(), of a recovery with equal ones, which then goes on with the same bits. False
+  // where what is read is no such state; the recovery cannot be used then.
+  void save(StateWriter& to) const;
+  bool restore(StateReader& from);
+
+ private:
+  enum class Phase : uint8_t { kStart, kIterate, kCheck, kVerify, kRoundEnd };
+  // What sleeps tells nothing: all are woken, and only when they are calm the level has converged.
+  struct Confirmation {
+    int since = 0;       // iteration in which all were woken; 0: they were not
+    int not_before = 0;  // iteration in which they may be woken again
+  };
+  // Of a level's evolution, until it converges or for max_iterations.
+  struct Round {
+    int number = 0;
+    int iteration = 0;
+    int calm = 0;  // iterations in a row
+    Confirmation confirmation;
+    double first_energy = 0;
+    int repairs = 0;
+  };
+
+  Status step();
+  Status start_level();
+  void enter(int h);
+  Status build_gradient_image();
+  void adapt();
+  void start_round(int number);
+  Status iterate();
+  void check();
+  Status verify();
+  Status end_round();
+  Status leave_level();
+  Status add_late_bubbles(bool& added);
+  bool confirmed(int calm);
+  bool restore_tried(StateReader& from);
+  void renumber();
+  void renumber_if_scattered();
+  void estimate_progress();
+  double delta_of(int h) const;
+  double unit_of(int h) const;
+  float iso_of(int h) const { return static_cast<float>(spec_.isos[static_cast<size_t>(h)]); }
+  const PyramidLevel& image_of(int h) const { return pyramid_.levels[static_cast<size_t>(h)]; }
+  LevelRecord& record() { return records_.back(); }
+
+  Pyramid pyramid_;
+  RecoverySpec spec_;
+  const Schedule& schedule_;
+  SimdTarget simd_;
+  RecoveryHooks hooks_;
+  Mesh& mesh_;
+  std::vector<LevelRecord>& records_;
+  Evolution evolution_;
+  int levels_;
+  int level_;         // h
+  int entered_ = -1;  // the level of space_ and guide_; -1: none yet
+  Phase phase_ = Phase::kStart;
+  bool done_ = false;
+  Round round_;
+  MeshSpace space_;
+  Guide guide_;
+  UserConstraints user_;     // in the space of the level
+  Buffer<Packed> gradient_;  // of the level
+  VoxelSet tried_;           // voxels of the level's late bubbles
+  double energy_ = 0;        // of the last iteration on any level
+  RecoveryProgress progress_{};
+};
+
+// All of it: start and advance to the end.
 Status pyramidal_recover_shape(Pyramid pyramid, const RecoverySpec& spec, const Schedule& schedule,
                                SimdTarget simd, const RecoveryHooks& hooks, Mesh& mesh,
                                std::vector<LevelRecord>& records);

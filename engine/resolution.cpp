@@ -65,6 +65,18 @@ void Resolution::restart() {
   tiny_.start(mesh_);
 }
 
+void Resolution::save(StateWriter& to) const {
+  to.add(next_cut_);
+  tiny_.save(to);
+}
+
+// The hash is built anew: what it finds does not depend on when it was built.
+void Resolution::restore(StateReader& from) {
+  restart();
+  from.read(next_cut_);
+  tiny_.restore(from, mesh_.slots());
+}
+
 void Resolution::run(uint32_t iteration, OperationCounts& counts) {
   iteration_ = iteration;
   changed_.clear();

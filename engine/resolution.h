@@ -26,6 +26,9 @@ class Resolution {
 
   // Everything that is known about single vertices is forgotten: new ids, new level.
   void restart();
+  // What the next pass knows of those before it.
+  void save(StateWriter& to) const;
+  void restore(StateReader& from);
   // The vertices that are due for a check by the slow-vertex rule (3.6) - all of them: check_all -
   // in ascending order; their periods start anew. Also brings the hash up to date and searches what
   // is around those vertices.

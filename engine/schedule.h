@@ -74,15 +74,29 @@ struct Pass {
 // time.
 using PassEnd = std::function<void(const std::string& names)>;
 
-// The worker threads of one context. Loops and graphs run in an arena of their own.
+// Whose threads run the tasks of loops.
+struct Threads {
+  // One thread, or the threads of the host, where it has lent them: plc_parallel_for_fn.
+  using Task = void (*)(size_t task, void* data);
+  using ParallelFor = void (*)(size_t tasks, Task task, void* data, void* user);
+
+  int count = 1;  // 0: as many as the arena of oneTBB that the caller is in, which then runs them
+  ParallelFor parallel_for = nullptr;  // null: oneTBB, or what stands for it (task_threads.h)
+  void* user = nullptr;
+};
+
+// The threads of one context. A task runs in the memory of the thread that started the loop.
 class Schedule final : public Executor {
  public:
-  // threads >= 1.
-  explicit Schedule(int threads);
+  // threads.count >= 0.
+  explicit Schedule(const Threads& threads);
+  explicit Schedule(int threads) : Schedule(Threads{threads}) {}
   ~Schedule() override;
-  int threads() const { return threads_; }
+  // That loops may run on; 0: the host knows.
+  int threads() const;
 
-  // With one thread, or one task, on the calling thread.
+  // With one thread, or one task, on the calling thread. What a task throws - one of them, if
+  // several do - is thrown when all have ended.
   void run(size_t tasks, const std::function<void(size_t)>& body) const override;
   // Runs the table. `small`: in order, on the calling thread. `after`, which may be empty, is
   // called at the same places of the table for any number of threads, while no pass runs.
@@ -90,8 +104,11 @@ class Schedule final : public Executor {
 
  private:
   struct Arena;
-  std::unique_ptr<Arena> arena_;
-  int threads_;
+  void run_parallel(size_t tasks, const std::function<void(size_t)>& body) const;
+
+  Threads threads_;
+  std::unique_ptr<Arena>
+      arena_;  // of oneTBB; null where there is one thread, or none of it is used
 };
 
 // Seconds of a monotonic clock.

@@ -132,6 +132,11 @@ void Sleep::observe() {
   }
 }
 
+void Sleep::restore(StateReader& from) {
+  from.read_all(asleep_);
+  from.demand(asleep_.size() <= mesh_.padded() / kRingLanes);
+}
+
 void Sleep::wake_all() {
   std::fill(mesh_.calm.begin(), mesh_.calm.end(), uint8_t{0});
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/mesh.h"
+#include "engine/state_io.h"
 #include "pyramid/executor.h"
 
 namespace plc {
@@ -39,6 +40,9 @@ class Sleep {
   void wake_all();
   // Ids have changed: everything that sleeps counts as fallen asleep just now.
   void restart() { asleep_.clear(); }
+  // Which blocks are asleep: those that fell asleep before are not treated as new ones.
+  void save(StateWriter& to) const { to.add_all(asleep_); }
+  void restore(StateReader& from);
 
  private:
   void find_rim();

@@ -64,6 +64,12 @@ const std::vector<uint32_t>& TinyComponents::flood(const Mesh& mesh, uint32_t v)
   return component_;
 }
 
+void TinyComponents::restore(StateReader& from, uint32_t slots) {
+  from.read_all(watched_);
+  seen_.assign(slots, 0);
+  flood_ = 0;
+}
+
 void TinyComponents::start(Mesh& mesh) {
   watched_.clear();
   seen_.assign(mesh.slots(), 0);
@@ -73,7 +79,7 @@ void TinyComponents::start(Mesh& mesh) {
     if (!mesh.alive(v) || seen(v)) continue;
     const auto& component = flood(mesh, v);
     if (component.empty()) continue;
-    watched_.push_back({component[0], signed_volume(mesh, component) > 0});
+    watched_.push_back({component[0], signed_volume(mesh, component) > 0 ? 1U : 0U});
   }
 }
 
@@ -88,12 +94,12 @@ int64_t TinyComponents::update(Mesh& mesh, const std::vector<uint32_t>& changed)
     const auto& component = flood(mesh, v);
     if (component.empty()) return;
     const double volume = signed_volume(mesh, component);
-    const bool positive = known != nullptr ? known->positive : volume > 0;
+    const bool positive = known != nullptr ? known->positive != 0 : volume > 0;
     if ((volume > 0) != positive || std::abs(volume) < least) {
       for (const uint32_t w : component) mesh.destroy(w);
       ++deleted;
     } else {
-      still.push_back({component[0], positive});
+      still.push_back({component[0], positive ? 1U : 0U});
     }
   };
   // Followed components first: their sign is known.

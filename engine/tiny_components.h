@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "engine/mesh.h"
+#include "engine/state_io.h"
 
 namespace plc {
 
@@ -21,11 +22,14 @@ class TinyComponents {
   int64_t update(Mesh& mesh, const std::vector<uint32_t>& changed);
   // Forgets all: ids have changed.
   void clear() { watched_.clear(); }
+  // What is followed, for a mesh of so many ids.
+  void save(StateWriter& to) const { to.add_all(watched_); }
+  void restore(StateReader& from, uint32_t slots);
 
  private:
   struct Watched {
-    uint32_t vertex;  // the smallest id of the component
-    bool positive;    // sign of the volume when it was first seen
+    uint32_t vertex;    // the smallest id of the component
+    uint32_t positive;  // sign of the volume when it was first seen: 1 or 0
   };
   // The component of v, when it has at most kTinyComponent vertices; else empty.
   const std::vector<uint32_t>& flood(const Mesh& mesh, uint32_t v);

@@ -8,6 +8,8 @@
 #include <memory>
 #include <vector>
 
+#include "engine/state_io.h"
+
 namespace plc {
 
 using Voxel = std::array<int32_t, 3>;  // x, y, z
@@ -91,6 +93,29 @@ class VoxelSet {
           visit(voxel_at(b, w * kWord + bit));
         }
       }
+    }
+  }
+
+  // Of an image of the same size.
+  void save(StateWriter& to) const {
+    to.add(static_cast<uint64_t>(
+        std::count_if(blocks_.begin(), blocks_.end(), [](const auto& b) { return b != nullptr; })));
+    for (size_t b = 0; b < blocks_.size(); ++b) {
+      if (blocks_[b] == nullptr) continue;
+      to.add(static_cast<uint64_t>(b));
+      for (size_t w = 0; w < kBlock / kWord; ++w) to.add(blocks_[b][w]);
+    }
+  }
+  void restore(StateReader& from) {
+    uint64_t count = 0;
+    from.read(count);
+    for (uint64_t i = 0; i < count && from.ok(); ++i) {
+      uint64_t b = 0;
+      from.read(b);
+      from.demand(b < blocks_.size() && from.left() >= kBlock / 8);
+      if (!from.ok()) return;
+      uint64_t* words = block(static_cast<size_t>(b));
+      for (size_t w = 0; w < kBlock / kWord; ++w) from.read(words[w]);
     }
   }
 

@@ -27,4 +27,8 @@ class [[nodiscard]] Status {
   std::string message_;
 };
 
+inline Status bad_argument(std::string message) {
+  return {ErrorCode::kInvalidArgument, std::move(message)};
+}
+
 }  // namespace plc

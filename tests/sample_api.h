@@ -12,9 +12,15 @@ namespace samples {
 
 struct Destroy {
   void operator()(plc_context* context) const { plc_context_destroy(context); }
+  void operator()(plc_volume* volume) const { plc_volume_destroy(volume); }
+  void operator()(plc_pyramid* pyramid) const { plc_pyramid_destroy(pyramid); }
+  void operator()(plc_run* run) const { plc_run_destroy(run); }
   void operator()(plc_surface* surface) const { plc_surface_destroy(surface); }
 };
 using Context = std::unique_ptr<plc_context, Destroy>;
+using VolumeHandle = std::unique_ptr<plc_volume, Destroy>;
+using Pyramid = std::unique_ptr<plc_pyramid, Destroy>;
+using Run = std::unique_ptr<plc_run, Destroy>;
 using Surface = std::unique_ptr<plc_surface, Destroy>;
 
 inline Context make_context(int threads = 1, plc_simd simd = PLC_SIMD_AUTO) {
@@ -64,21 +70,45 @@ inline Surface extract(plc_context* context, const plc_image& image, const plc_p
 }
 
 inline std::vector<float> positions(const plc_surface* surface, plc_space space) {
-  std::vector<float> xyz(static_cast<size_t>(plc_surface_vertex_count(surface)) * 3);
-  plc_surface_positions(surface, space, xyz.data());
+  const int64_t n = plc_surface_vertex_count(surface);
+  std::vector<float> xyz(static_cast<size_t>(n) * 3);
+  REQUIRE(plc_surface_positions(make_context().get(), surface, space, xyz.data(), n) == PLC_OK);
   return xyz;
 }
 
 inline std::vector<uint32_t> faces(const plc_surface* surface, plc_space space) {
-  std::vector<uint32_t> abc(static_cast<size_t>(plc_surface_face_count(surface)) * 3);
-  plc_surface_faces(surface, space, abc.data());
+  const int64_t n = plc_surface_face_count(surface);
+  std::vector<uint32_t> abc(static_cast<size_t>(n) * 3);
+  REQUIRE(plc_surface_faces(make_context().get(), surface, space, abc.data(), n) == PLC_OK);
   return abc;
 }
 
 inline std::vector<float> normals(const plc_surface* surface, plc_space space) {
-  std::vector<float> xyz(static_cast<size_t>(plc_surface_vertex_count(surface)) * 3);
-  plc_surface_normals(surface, space, xyz.data());
+  const int64_t n = plc_surface_vertex_count(surface);
+  std::vector<float> xyz(static_cast<size_t>(n) * 3);
+  REQUIRE(plc_surface_normals(make_context().get(), surface, space, xyz.data(), n) == PLC_OK);
   return xyz;
+}
+
+inline plc_level_report level_of(const plc_surface* surface, int index) {
+  plc_level_report report{};
+  report.struct_size = sizeof report;
+  REQUIRE(plc_surface_level(make_context().get(), surface, index, &report) == PLC_OK);
+  return report;
+}
+
+inline plc_parameters parameters_of(const plc_surface* surface) {
+  plc_parameters used;
+  plc_parameters_defaults(&used);
+  REQUIRE(plc_surface_parameters(make_context().get(), surface, &used) == PLC_OK);
+  return used;
+}
+
+// Smallest and largest voxel.
+inline std::array<double, 2> range_of(const plc_surface* surface) {
+  double low = 0, high = 0;
+  REQUIRE(plc_surface_input_range(make_context().get(), surface, &low, &high) == PLC_OK);
+  return {low, high};
 }
 
 inline plc_measures measured(plc_context* context, const plc_surface* surface, plc_space space) {

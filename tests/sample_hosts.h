@@ -98,11 +98,4 @@ inline Point in_image(const plc_image& image, const Point& from_middle) {
   return p;
 }
 
-inline plc_level_report level_of(const plc_surface* surface, int index) {
-  plc_level_report report{};
-  report.struct_size = sizeof report;
-  REQUIRE(plc_surface_level(surface, index, &report) == PLC_OK);
-  return report;
-}
-
 }  // namespace samples

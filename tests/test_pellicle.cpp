@@ -256,12 +256,9 @@ TEST_CASE("progress is told after every iteration and may cancel", "[pellicle]")
   extras.progress = listen;
   extras.progress_user = &told;
   REQUIRE(plc_extract(context.get(), &image, &p, &extras, &surface) == PLC_OK);
-  plc_level_report report{};
-  report.struct_size = sizeof report;
   int64_t iterations = 0;
   for (int i = 0; i < plc_surface_level_count(surface); ++i) {
-    REQUIRE(plc_surface_level(surface, i, &report) == PLC_OK);
-    iterations += report.iterations;
+    iterations += samples::level_of(surface, i).iterations;
   }
   CHECK(told.calls == iterations);
   plc_surface_destroy(surface);
@@ -282,10 +279,7 @@ TEST_CASE("a level tells how many vertices it has moved and checked", "[pellicle
     p.epsilon = 1e-15;  // all the iterations
     p.max_iterations = 80;
     const Surface surface = samples::extract(context.get(), image, p);
-    plc_level_report report{};
-    report.struct_size = sizeof report;
-    REQUIRE(plc_surface_level(surface.get(), 0, &report) == PLC_OK);
-    return report;
+    return samples::level_of(surface.get(), 0);
   };
   const plc_level_report all = level(0), some = level(1);
   // Blocks are moved whole, deleted vertices with them.
@@ -319,10 +313,8 @@ TEST_CASE("every voxel type gives the same surface of the same values", "[pellic
     image.voxels = kVoxels[type];
     const Surface surface = samples::extract(context.get(), image, samples::parameters(100.5, 1));
     hashes.push_back(plc_surface_hash(surface.get()));
-    double low = -1, high = -1;
-    plc_surface_input_range(surface.get(), &low, &high);
-    CHECK(low == 0);
-    CHECK(high == u8[9 * 18 * 18 + 9 * 18 + 9]);
+    CHECK(samples::range_of(surface.get())[0] == 0);
+    CHECK(samples::range_of(surface.get())[1] == u8[9 * 18 * 18 + 9 * 18 + 9]);
   }
   for (const uint64_t hash : hashes) CHECK(hash == hashes[0]);
 }

@@ -148,10 +148,8 @@ TEST_CASE("the norm of the gradient as feature shows the object's contour, insid
   plc_parameters p = parameters(0.125, 0);
   p.feature = PLC_FEATURE_GRADIENT_NORM;
   const Surface surface = extract(context.get(), image, p);
-  double low = 0, high = 0;
-  plc_surface_input_range(surface.get(), &low, &high);
-  CHECK(low == Approx(0).margin(1e-6));
-  CHECK(high == Approx(0.25).epsilon(0.02));
+  CHECK(samples::range_of(surface.get())[0] == Approx(0).margin(1e-6));
+  CHECK(samples::range_of(surface.get())[1] == Approx(0.25).epsilon(0.02));
   const plc_measures m = measured(context.get(), surface.get(), PLC_SPACE_LPS);
   CHECK(m.components == 2);
   CHECK(m.volume == Approx(ball_volume(kRadius + 2) - ball_volume(kRadius - 2)).epsilon(0.1));
@@ -163,8 +161,7 @@ TEST_CASE("the norm of the gradient as feature shows the object's contour, insid
   p.feature_sigma = 2;
   p.iso = 0.1;
   const Surface smooth = extract(context.get(), image, p);
-  plc_surface_input_range(smooth.get(), &low, &high);
-  CHECK(high < 0.2);
+  CHECK(samples::range_of(smooth.get())[1] < 0.2);
   p.feature_sigma = -1;
   plc_surface* none = nullptr;
   CHECK(plc_extract(context.get(), &image, &p, nullptr, &none) == PLC_INVALID_ARGUMENT);
@@ -222,8 +219,7 @@ TEST_CASE("a bright shell is found by its gradient alone, without an iso-value",
   CHECK(report.converged == 1);
   CHECK(std::isnan(report.iso));
   CHECK(report.late_bubbles + report.late_cavities == 0);
-  plc_parameters used;
-  plc_surface_parameters(surface.get(), &used);
+  const plc_parameters used = samples::parameters_of(surface.get());
   CHECK(used.level_iso_count == 0);
   // The other forces need one.
   p.force = PLC_FORCE_BOTH;

@@ -168,9 +168,7 @@ TEST_CASE("levels are reported from coarse to fine", "[pellicle]") {
   REQUIRE(plc_surface_level_count(surface.get()) == 3);
   int64_t transformations = 0;
   for (int i = 0; i < 3; ++i) {
-    plc_level_report r{};
-    r.struct_size = sizeof r;
-    REQUIRE(plc_surface_level(surface.get(), i, &r) == PLC_OK);
+    const plc_level_report r = samples::level_of(surface.get(), i);
     const int h = 2 - i;
     CHECK(r.level == h);
     CHECK(r.unit == Approx(std::pow(1.5, h)));
@@ -201,19 +199,23 @@ TEST_CASE("levels are reported from coarse to fine", "[pellicle]") {
   }
   CHECK(transformations > 0);
   plc_level_report r{};
-  CHECK(plc_surface_level(surface.get(), 0, &r) == PLC_INVALID_ARGUMENT);
+  const auto level = [&](int i, plc_level_report* report) {
+    return plc_surface_level(context.get(), surface.get(), i, report);
+  };
+  CHECK(level(0, &r) == PLC_INVALID_ARGUMENT);
   r.struct_size = sizeof r;
-  CHECK(plc_surface_level(surface.get(), -1, &r) == PLC_INVALID_ARGUMENT);
-  CHECK(plc_surface_level(surface.get(), 3, &r) == PLC_INVALID_ARGUMENT);
-  CHECK(plc_surface_level(surface.get(), 0, nullptr) == PLC_INVALID_ARGUMENT);
+  CHECK(level(-1, &r) == PLC_INVALID_ARGUMENT);
+  CHECK(level(3, &r) == PLC_INVALID_ARGUMENT);
+  CHECK(std::string(plc_context_message(context.get())) == "level 3: the surface has 3");
+  CHECK(level(0, nullptr) == PLC_INVALID_ARGUMENT);
+  CHECK(level(0, &r) == PLC_OK);
 }
 
 TEST_CASE("the parameters as used have everything filled in", "[pellicle]") {
   const Context context = samples::make_context();
   plc_parameters p = samples::parameters(0.5, -1);
   const Surface surface = samples::extract(context.get(), framed(kFrames[0]), p);
-  plc_parameters used;
-  plc_surface_parameters(surface.get(), &used);
+  const plc_parameters used = samples::parameters_of(surface.get());
   CHECK(used.struct_size == sizeof used);
   CHECK(used.levels == 3);
   CHECK(used.level_iso_count == 4);
@@ -222,10 +224,12 @@ TEST_CASE("the parameters as used have everything filled in", "[pellicle]") {
   CHECK(used.window_high > 0.5);
   CHECK(std::isfinite(used.pad_value));
   CHECK(used.curvature == p.curvature);
-  double pyramid = -1, evolution = -1;
-  plc_surface_seconds(surface.get(), &pyramid, &evolution);
-  CHECK(pyramid >= 0);
-  CHECK(evolution > 0);
+  plc_seconds seconds{};
+  seconds.struct_size = sizeof seconds;
+  REQUIRE(plc_surface_seconds(context.get(), surface.get(), &seconds) == PLC_OK);
+  CHECK(seconds.images > 0);
+  CHECK(seconds.preparation >= seconds.images);
+  CHECK(seconds.evolution > 0);
   // Used again as they are they give the same surface.
   const Surface again = samples::extract(context.get(), framed(kFrames[0]), used);
   CHECK(plc_surface_hash(again.get()) == plc_surface_hash(surface.get()));
@@ -240,12 +244,8 @@ TEST_CASE("iso-values of levels are taken as given", "[pellicle]") {
   p.level_iso[0] = 0.45;
   p.level_iso[1] = 0.4;
   const Surface surface = samples::extract(context.get(), framed(kFrames[0]), p);
-  plc_level_report r{};
-  r.struct_size = sizeof r;
-  REQUIRE(plc_surface_level(surface.get(), 0, &r) == PLC_OK);
-  CHECK(r.iso == Approx(0.4));
-  REQUIRE(plc_surface_level(surface.get(), 1, &r) == PLC_OK);
-  CHECK(r.iso == Approx(0.45));
+  CHECK(samples::level_of(surface.get(), 0).iso == Approx(0.4));
+  CHECK(samples::level_of(surface.get(), 1).iso == Approx(0.45));
 }
 
 TEST_CASE("a dark object in a bright image is the same surface", "[pellicle]") {

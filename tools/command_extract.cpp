@@ -47,6 +47,7 @@ int on_progress(const plc_progress* progress, void* user) {
 
 // The files of --each-level: a callback must not throw through the engine, so it keeps the failure.
 struct LevelFiles {
+  plc_context* context;
   const std::string& output;
   plc_space space;
   std::optional<Failure> failure;
@@ -56,7 +57,7 @@ plc_verdict on_level(const plc_level_report* level, const plc_surface* surface, 
   auto& files = *static_cast<LevelFiles*>(user);
   try {
     write_mesh(named(files.output, "level" + std::to_string(level->level)),
-               mesh_of(surface, files.space));
+               mesh_of(files.context, surface, files.space));
   } catch (const Failure& failure) {
     files.failure = failure;
     return PLC_VERDICT_STOP;
@@ -73,7 +74,7 @@ SurfaceHandle evolve(plc_context* context, const plc_image& image, const Extract
   plc_extras extras = inputs.extras();
   extras.progress = on_progress;
   extras.progress_user = &watch;
-  LevelFiles files{job.output, options.space, std::nullopt};
+  LevelFiles files{context, job.output, options.space, std::nullopt};
   if (options.each_level) {
     extras.level = on_level;
     extras.level_user = &files;
@@ -142,7 +143,7 @@ class Extraction {
     plc_parameters& p = job.parameters;
     const double last = jobs_[index - 1].parameters.iso;
     if (!nearer(volume_.image, last, p.iso, p.inside_below != 0)) return;
-    inputs_->start_from(mesh_of(surface_.get(), options_.space));
+    inputs_->start_from(mesh_of(context_.get(), surface_.get(), options_.space));
     p.init = PLC_INIT_MESH;
     p.levels = 0;
     p.level_iso_count = 0;
@@ -154,7 +155,7 @@ class Extraction {
     interrupt_.only_note();
     const double written = now();
     const plc_measures measures = measures_of(context_.get(), surface_.get());
-    const TriangleMesh mesh = mesh_of(surface_.get(), options_.space);
+    const TriangleMesh mesh = mesh_of(context_.get(), surface_.get(), options_.space);
     // The engine's promise is about its own mesh space; this one is rounded to another.
     const plc_check check = check_of(context_.get(), mesh);
     write_mesh(job.output, mesh);
@@ -165,8 +166,10 @@ class Extraction {
                                            timings, told));
     }
     if (!options_.quiet) {
-      std::fputs(summary(volume_.image, surface_.get(), measures, timings, job.output).c_str(),
-                 stdout);
+      std::fputs(
+          summary(context_.get(), volume_.image, surface_.get(), measures, timings, job.output)
+              .c_str(),
+          stdout);
       std::fflush(stdout);
     }
     if (check.valid != 0) return 0;

@@ -158,7 +158,7 @@ class LabelExtraction {
       throw Failure{"label " + name_of(piece.label) + ": " + failure.message};
     }
     if (plc_surface_face_count(made) == 0) return true;
-    piece.mesh = mesh_of(made, options_.space);
+    piece.mesh = mesh_of(context_.get(), made, options_.space);
     if (options_.space == PLC_SPACE_VOXEL) shift(piece.mesh, crop.low);
     piece.measures = measures_of(context_.get(), made);
     if (!options_.report.empty()) piece.report = report_of(piece, made, begin);

@@ -22,6 +22,11 @@ inline Failure failure_of(const plc_context* context, plc_status status) {
   return {message};
 }
 
+// Throws Failure where a call has failed.
+inline void demand(const plc_context* context, plc_status status) {
+  if (status != PLC_OK) throw failure_of(context, status);
+}
+
 inline ContextHandle make_context(const plc_context_options& options) {
   plc_context* context = nullptr;
   char error[256] = "";

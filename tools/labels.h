@@ -25,7 +25,7 @@ std::vector<Label> find_labels(const std::string& path, const plc_image& image);
 struct LabelCrop {
   std::array<int64_t, 3> low;   // the first voxel's indices in the whole image; may be -1
   std::vector<uint8_t> voxels;  // 255 in the label, 0 elsewhere
-  plc_image image;              // of them, in its place in the frame of the whole image
+  plc_image image{};            // of them, in its place in the frame of the whole image
 };
 
 // The label's box and one voxel around it, whether the image has that or not.

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "tools/atomic_file.h"
+#include "tools/engine_handles.h"
 #include "tools/volume_io.h"
 
 namespace plc::tools {
@@ -53,12 +54,10 @@ Json parameters_json(const plc_parameters& p, ExtractOptions options) {
           {"space", name_of(options.space, kSpaces)}};
 }
 
-plc_level_report level_of(const plc_surface* surface, int index) {
+plc_level_report level_of(plc_context* context, const plc_surface* surface, int index) {
   plc_level_report level{};
   level.struct_size = sizeof level;
-  if (plc_surface_level(surface, index, &level) != PLC_OK) {
-    throw Failure{"level " + std::to_string(index) + ": no report"};
-  }
+  demand(context, plc_surface_level(context, surface, index, &level));
   return level;
 }
 
@@ -95,10 +94,10 @@ Json level_json(const plc_level_report& level) {
             {"volume", level.late_volume}}}};
 }
 
-Json input_json(const plc_image& image, const plc_surface* surface) {
+Json input_json(plc_context* context, const plc_image& image, const plc_surface* surface) {
   double low = 0;
   double high = 0;
-  plc_surface_input_range(surface, &low, &high);
+  demand(context, plc_surface_input_range(context, surface, &low, &high));
   return {{"dims", image.dims}, {"spacing", image.spacing}, {"range", {low, high}}};
 }
 
@@ -133,29 +132,29 @@ std::string hash_text(uint64_t hash) {
   return format("%016" PRIx64, hash);
 }
 
-Json make_report(const plc_context* context, const plc_image& image, const plc_surface* surface,
+Json make_report(plc_context* context, const plc_image& image, const plc_surface* surface,
                  const plc_measures& measures, const Timings& timings,
                  const ExtractOptions& options) {
   plc_parameters parameters{};
   parameters.struct_size = sizeof parameters;
-  plc_surface_parameters(surface, &parameters);
-  double pyramid = 0;
-  double evolution = 0;
-  plc_surface_seconds(surface, &pyramid, &evolution);
+  demand(context, plc_surface_parameters(context, surface, &parameters));
+  plc_seconds seconds{};
+  seconds.struct_size = sizeof seconds;
+  demand(context, plc_surface_seconds(context, surface, &seconds));
   Json levels = Json::array();
   for (int i = 0; i < plc_surface_level_count(surface); ++i) {
-    levels.push_back(level_json(level_of(surface, i)));
+    levels.push_back(level_json(level_of(context, surface, i)));
   }
   return {{"pellicle", plc_version_string()},
-          {"input", input_json(image, surface)},
+          {"input", input_json(context, image, surface)},
           {"parameters", parameters_json(parameters, options)},
           {"levels", levels},
           {"surface", surface_json(measures)},
           {"seconds",
            {{"read", timings.read},
-            {"pyramid", pyramid},
-            {"images", plc_surface_image_seconds(surface)},
-            {"evolution", evolution},
+            {"pyramid", seconds.preparation},
+            {"images", seconds.images},
+            {"evolution", seconds.evolution},
             {"write", timings.write},
             {"total", timings.total}}},
           {"peak_rss_bytes", peak_rss_bytes()},
@@ -174,14 +173,14 @@ void write_report(const std::string& path, const Json& report) {
   file.commit();
 }
 
-std::string summary(const plc_image& image, const plc_surface* surface, const plc_measures& m,
-                    const Timings& timings, const std::string& output) {
+std::string summary(plc_context* context, const plc_image& image, const plc_surface* surface,
+                    const plc_measures& m, const Timings& timings, const std::string& output) {
   std::string text =
       format("image    %" PRId64 " x %" PRId64 " x %" PRId64 " voxels of %.4g x %.4g x %.4g mm\n",
              image.dims[0], image.dims[1], image.dims[2], image.spacing[0], image.spacing[1],
              image.spacing[2]);
   for (int i = 0; i < plc_surface_level_count(surface); ++i) {
-    const plc_level_report level = level_of(surface, i);
+    const plc_level_report level = level_of(context, surface, i);
     text += format("level %d  %" PRId64 " x %" PRId64 " x %" PRId64 "%s: %" PRId64
                    " iterations, %" PRId64 " vertices, %.2f s%s%s\n",
                    level.level, level.dims[0], level.dims[1], level.dims[2],

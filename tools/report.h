@@ -19,7 +19,7 @@ std::string hash_text(uint64_t hash);
 
 // `options` are those of the run, of which the parameters are not read; measures are of the surface
 // in patient space (mm).
-nlohmann::ordered_json make_report(const plc_context* context, const plc_image& image,
+nlohmann::ordered_json make_report(plc_context* context, const plc_image& image,
                                    const plc_surface* surface, const plc_measures& measures,
                                    const Timings& timings, const ExtractOptions& options);
 
@@ -29,7 +29,7 @@ void write_report(const std::string& path, const nlohmann::ordered_json& report)
 void check_report_path(const std::string& path);
 
 // A few lines for people.
-std::string summary(const plc_image& image, const plc_surface* surface,
+std::string summary(plc_context* context, const plc_image& image, const plc_surface* surface,
                     const plc_measures& measures, const Timings& timings,
                     const std::string& output);
 

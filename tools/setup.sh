@@ -4,7 +4,7 @@
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
 
-build=(g++ cmake make libhwy-dev libtbb-dev libmimalloc-dev libinsighttoolkit5-dev libarchive-dev
+build=(g++ cmake make libhwy-dev libtbb-dev libmimalloc2.0 libinsighttoolkit5-dev libarchive-dev
   libexpat1-dev zlib1g-dev libembree-dev libpng-dev libcli11-dev nlohmann-json3-dev)
 test=(catch2 invesalius-examples jq)
 demo=(invesalius-examples)

@@ -4,24 +4,24 @@
 
 namespace plc::tools {
 
-TriangleMesh mesh_of(const plc_surface* surface, plc_space space) {
+TriangleMesh mesh_of(plc_context* context, const plc_surface* surface, plc_space space) {
   TriangleMesh mesh;
-  const auto vertices = static_cast<size_t>(plc_surface_vertex_count(surface));
-  std::vector<float> xyz(3 * vertices);
-  plc_surface_positions(surface, space, xyz.data());
+  const int64_t vertices = plc_surface_vertex_count(surface);
+  const int64_t faces = plc_surface_face_count(surface);
+  std::vector<float> xyz(3 * static_cast<size_t>(vertices));
+  demand(context, plc_surface_positions(context, surface, space, xyz.data(), vertices));
   mesh.xyz.assign(xyz.begin(), xyz.end());
-  mesh.abc.resize(3 * static_cast<size_t>(plc_surface_face_count(surface)));
-  plc_surface_faces(surface, space, mesh.abc.data());
-  mesh.normals.resize(3 * vertices);
-  plc_surface_normals(surface, space, mesh.normals.data());
+  mesh.abc.resize(3 * static_cast<size_t>(faces));
+  demand(context, plc_surface_faces(context, surface, space, mesh.abc.data(), faces));
+  mesh.normals.resize(3 * static_cast<size_t>(vertices));
+  demand(context, plc_surface_normals(context, surface, space, mesh.normals.data(), vertices));
   return mesh;
 }
 
 plc_measures measures_of(plc_context* context, const plc_surface* surface) {
   plc_measures measures{};
   measures.struct_size = sizeof measures;
-  const plc_status status = plc_surface_measure(context, surface, PLC_SPACE_LPS, &measures);
-  if (status != PLC_OK) throw failure_of(context, status);
+  demand(context, plc_surface_measure(context, surface, PLC_SPACE_LPS, &measures));
   return measures;
 }
 

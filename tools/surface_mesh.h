@@ -5,8 +5,8 @@
 
 namespace plc::tools {
 
-// With normals.
-TriangleMesh mesh_of(const plc_surface* surface, plc_space space);
+// With normals. Throws Failure.
+TriangleMesh mesh_of(plc_context* context, const plc_surface* surface, plc_space space);
 
 // In patient space (mm). Throws Failure.
 plc_measures measures_of(plc_context* context, const plc_surface* surface);

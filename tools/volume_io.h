@@ -15,7 +15,7 @@ struct Failure {
 
 // A volume in memory; image.voxels points into bytes.
 struct LoadedVolume {
-  plc_image image;
+  plc_image image{};
   std::vector<std::byte> bytes;
 };
 

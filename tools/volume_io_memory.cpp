@@ -80,9 +80,13 @@ LoadedVolume make_volume(const std::string& path, plc_voxel_type type, const int
   const auto count = static_cast<uint64_t>(checked_voxel_count(path, dims));
   LoadedVolume volume;
   // Not plc_image_defaults: the tools' library stands without the engine's.
-  volume.image = {sizeof(plc_image),           type,      nullptr,
-                  {dims[0], dims[1], dims[2]}, {1, 1, 1}, {0, 0, 0},
-                  {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  volume.image.struct_size = sizeof volume.image;
+  volume.image.type = type;
+  for (int axis = 0; axis < 3; ++axis) {
+    volume.image.dims[axis] = dims[axis];
+    volume.image.spacing[axis] = 1;
+    volume.image.direction[4 * axis] = 1;
+  }
   require_memory(path, count * voxel_size(type));
   try {
     volume.bytes.resize(count * voxel_size(type));

@@ -1,0 +1,418 @@
+#include "engine/api_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "engine/api_extras.h"
+#include "engine/api_force.h"
+#include "engine/api_surface.h"
+#include "engine/fingerprint.h"
+#include "engine/fnv.h"
+#include "engine/parameters.h"
+#include "engine/refinement.h"
+#include "engine/state_io.h"
+#include "pyramid/mask.h"
+
+namespace plc {
+
+namespace {
+
+std::string text(double value) {
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.6g", value);
+  return buffer;
+}
+
+bool same(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+// What a pyramid reads of the parameters.
+bool same_pyramid(const plc_parameters& a, const plc_parameters& b) {
+  return same(a.iso, b.iso) && a.inside_below == b.inside_below &&
+         a.level_iso_count == b.level_iso_count &&
+         std::equal(a.level_iso, a.level_iso + a.level_iso_count, b.level_iso) &&
+         same(a.window_low, b.window_low) && same(a.window_high, b.window_high) &&
+         same(a.pad_value, b.pad_value) && a.feature == b.feature &&
+         a.feature_sigma == b.feature_sigma && a.levels == b.levels && a.reduction == b.reduction;
+}
+
+void take_pyramid(const plc_parameters& from, plc_parameters& to) {
+  to.iso = from.iso;
+  to.inside_below = from.inside_below;
+  to.level_iso_count = from.level_iso_count;
+  std::copy_n(from.level_iso, PLC_MAX_LEVELS, to.level_iso);
+  to.window_low = from.window_low;
+  to.window_high = from.window_high;
+  to.pad_value = from.pad_value;
+  to.feature = from.feature;
+  to.feature_sigma = from.feature_sigma;
+  to.levels = from.levels;
+  to.reduction = from.reduction;
+}
+
+constexpr uint64_t kMagic = 0x45544154534C4350;  // "PLCSTATE"
+
+}  // namespace
+
+Status Run::prepare(std::shared_ptr<const PyramidData> pyramid, Pyramid images, Lasting lasting,
+                    const plc_parameters& parameters, const plc_extras& extras) {
+  const double start = now();
+  pyramid_ = std::move(pyramid);
+  surface_ = std::make_unique<plc_surface>();
+  surface_->host = host_;
+  surface_->parameters = parameters;
+  plc_parameters& p = surface_->parameters;
+  take_pyramid(pyramid_->parameters, p);
+  surface_->frame = pyramid_->volume->frame;
+  surface_->range = pyramid_->range;
+  for (size_t h = images.levels.size(); h-- > 0;) {
+    surface_->level_dims.push_back(images.levels[h].dims);
+    surface_->level_units.push_back(images.levels[h].unit);
+  }
+  RecoverySpec spec = recovery_spec(p);
+  spec.isos = pyramid_->isos;
+  take_extras(extras, surface_->frame, spec);
+  extras_ = extras;
+  spec.force = level_force(extras_, surface_->frame, host_->schedule);
+  if (p.init == PLC_INIT_MASK) {
+    if (Status s = build_mask(*extras.mask, lasting, spec.start.mask); !s.ok()) return s;
+  }
+  given_hash_ ^= given_hash(spec);
+  extras_.seeds = nullptr;
+  extras_.mask = nullptr;
+  extras_.mesh_xyz = nullptr;
+  extras_.mesh_abc = nullptr;
+  extras_.attachments = nullptr;
+  extras_.pins = nullptr;
+  host_->log(PLC_LOG_INFO, "window " + text(p.window_low) + " .. " + text(p.window_high) +
+                               ", surrounded by " + text(p.pad_value) + ", " +
+                               std::to_string(p.levels) + " levels above the image");
+  recovery_.emplace(std::move(images), std::move(spec), host_->schedule, host_->simd, hooks(),
+                    surface_->mesh, surface_->records);
+  surface_->seconds.struct_size = sizeof surface_->seconds;
+  surface_->seconds.preparation = pyramid_->seconds + (now() - start);
+  surface_->seconds.images = pyramid_->seconds_images;
+  return {};
+}
+
+Status check_agreement(const PyramidData& pyramid, const plc_parameters& parameters) {
+  if (same_pyramid(parameters, pyramid.given) || same_pyramid(parameters, pyramid.parameters)) {
+    return {};
+  }
+  return bad_argument(
+      "parameters: iso, window, pad value, feature, levels or reduction are not those that the "
+      "pyramid was made with");
+}
+
+// 1 where the mask is not 0.
+Status Run::build_mask(const plc_image& mask, Lasting lasting, Pyramid& pyramid) {
+  VolumeView volume;
+  if (Status s =
+          take_voxels("mask", mask, lasting == Lasting::kRun, host_->schedule, volume, own_mask_);
+      !s.ok()) {
+    return s;
+  }
+  if (!is_any_set(volume, host_->schedule)) {
+    return {ErrorCode::kInvalidData, "mask: every voxel is 0"};
+  }
+  given_hash_ = voxels_hash(volume, host_->schedule);
+  // Clipped at 1, voxels without a sign are 0 or 1 as they are.
+  if (volume.type != VoxelType::kU8 && volume.type != VoxelType::kU16) {
+    set_voxels(volume, host_->schedule, mask_);
+    volume.type = VoxelType::kU8;
+    volume.voxels = mask_.data();
+  }
+  volume.spacing = pyramid_->volume->view.spacing;
+  PyramidSpec spec = pyramid_spec(surface_->parameters);
+  spec.window_low = 0;
+  spec.window_high = 1;
+  spec.pad_value = 0;
+  return build_pyramid(volume, spec, host_->schedule, host_->simd, pyramid);
+}
+
+RecoveryHooks Run::hooks() {
+  RecoveryHooks hooks;
+  if (extras_.progress != nullptr) {
+    hooks.progress = [this](const RecoveryProgress& p) {
+      const plc_progress out = progress(p);
+      return extras_.progress(&out, extras_.progress_user) == 0;
+    };
+  }
+  if (extras_.level != nullptr) {
+    hooks.level = [this](const LevelRecord&) { return ask_user(); };
+  }
+  hooks.left = [this](const LevelRecord& record) { tell(record); };
+  return hooks;
+}
+
+plc_progress Run::progress(const RecoveryProgress& p) const {
+  const double spent = surface_->seconds.evolution + (busy_ ? now() - since_ : 0);
+  return {sizeof(plc_progress), p.level, p.levels, p.iteration, p.vertices, p.energy, p.speed,
+          p.fraction,           spent};
+}
+
+LevelVerdict Run::ask_user() {
+  surface_->space = recovery_->space();
+  plc_level_report report = level_report(*surface_, surface_->records.size() - 1);
+  switch (extras_.level(&report, surface_.get(), extras_.level_user)) {
+    case PLC_VERDICT_MORE:
+      return LevelVerdict::kMore;
+    case PLC_VERDICT_STOP:
+      return LevelVerdict::kStop;
+    default:
+      return LevelVerdict::kAccept;
+  }
+}
+
+// What a host that listens is told of a level that has been left.
+void Run::tell(const LevelRecord& r) const {
+  if (host_->log_fn == nullptr) return;
+  const std::string level = "level " + std::to_string(r.level) + ": ";
+  if (r.iterations == 0) {
+    host_->log(PLC_LOG_INFO, level + "nothing that holds a surface");
+    return;
+  }
+  const std::string what = std::to_string(r.iterations) + " iterations, " +
+                           std::to_string(r.vertices) + " vertices, energy " + text(r.energy) +
+                           ", " + text(r.seconds.total) + " s";
+  host_->log(r.converged ? PLC_LOG_INFO : PLC_LOG_WARNING,
+             level + (r.converged ? "converged, " : "not converged, ") + what);
+}
+
+Status Run::usable() const {
+  if (busy_) return bad_argument("run: it is in the middle of a call");
+  if (failed_) return bad_argument("run: it has ended by an error, there is nothing to go on with");
+  return {};
+}
+
+// What fails, or throws, ends the run; but for what was cancelled.
+Status Run::guard(const std::function<Status()>& body) {
+  if (Status s = usable(); !s.ok()) return s;
+  busy_ = failed_ = true;
+  since_ = now();
+  const auto end = [this](bool failed) {
+    surface_->seconds.evolution += now() - since_;
+    surface_->space = recovery_->space();
+    busy_ = false;
+    failed_ = failed;
+  };
+  try {
+    Status s = body();
+    end(!s.ok() && s.code() != ErrorCode::kCancelled);
+    return s;
+  } catch (...) {
+    end(true);
+    throw;
+  }
+}
+
+Status Run::start() {
+  return guard([this] { return recovery_->start(); });
+}
+
+Status Run::advance(Amount amount) {
+  return guard([this, amount] { return recovery_->advance(amount); });
+}
+
+plc_run_state Run::state() const {
+  plc_run_state state{};
+  state.done = recovery_->done() ? 1 : 0;
+  state.between_levels = recovery_->between_levels() ? 1 : 0;
+  state.progress = progress(recovery_->progress());
+  return state;
+}
+
+std::unique_ptr<plc_surface> Run::surface() const {
+  auto copy = std::make_unique<plc_surface>();
+  copy->host = host_;
+  copy->mesh = surface_->mesh.copy();
+  if (!copy->mesh.in_order()) {
+    copy->mesh.renumber(surface_->parameters.renumbering != 0
+                            ? morton_order(copy->mesh, host_->schedule)
+                            : living_order(copy->mesh),
+                        host_->schedule);
+  }
+  copy->space = surface_->space;
+  copy->frame = surface_->frame;
+  copy->parameters = surface_->parameters;
+  copy->range = surface_->range;
+  copy->records = surface_->records;
+  copy->level_dims = surface_->level_dims;
+  copy->level_units = surface_->level_units;
+  copy->seconds = surface_->seconds;
+  return copy;
+}
+
+std::unique_ptr<plc_surface> Run::release() {
+  recovery_.reset();
+  return std::move(surface_);
+}
+
+// Of all that a saved state does not hold and goes on with.
+uint64_t Run::fingerprint() const {
+  if (!fingerprint_) {
+    Fnv hash;
+    hash.add(voxels_hash(pyramid_->volume->view, host_->schedule));
+    hash.add(parameters_hash(surface_->parameters));
+    hash.add(given_hash_);
+    fingerprint_ = hash.value();
+  }
+  return *fingerprint_;
+}
+
+void Run::save(StateWriter& to) const {
+  to.add(kMagic);
+  to.add(static_cast<int32_t>(PLC_VERSION));
+  to.add(fingerprint());
+  to.add(surface_->seconds.evolution);
+  recovery_->save(to);
+  to.add(words_hash(to.bytes().data(), to.bytes().size()));
+}
+
+Status Run::restore(const uint8_t* state, size_t size) {
+  const auto refuse = [](const char* what) {
+    return Status(ErrorCode::kInvalidData, std::string("state: ") + what);
+  };
+  uint64_t magic = 0;
+  uint64_t fingerprint_there = 0;
+  uint64_t sum = 0;
+  int32_t version = 0;
+  if (size < sizeof sum) return refuse("truncated");
+  StateReader from(state, size - sizeof sum);
+  StateReader(state + size - sizeof sum, sizeof sum).read(sum);
+  from.read(magic);
+  from.read(version);
+  from.read(fingerprint_there);
+  from.read(surface_->seconds.evolution);
+  if (!from.ok() || magic != kMagic) return refuse("not one of a run");
+  if (version != PLC_VERSION) return refuse("of another version of the library");
+  if (sum != words_hash(state, size - sizeof sum)) return refuse("truncated or altered");
+  if (fingerprint_there != fingerprint()) {
+    return refuse("of another image, other parameters or other extras");
+  }
+  return guard([&]() -> Status {
+    if (!recovery_->restore(from) || !from.at_end()) return refuse("altered");
+    return {};
+  });
+}
+
+}  // namespace plc
+
+using plc::Status;
+
+namespace {
+
+// The arguments of plc_run_create and plc_run_restore, checked, and a run without a surface yet.
+Status new_run(plc_context* context, const plc_pyramid* pyramid, const plc_parameters* parameters,
+               const plc_extras* extras, plc_run** run, std::unique_ptr<plc_run>& made) {
+  if (pyramid == nullptr || run == nullptr) {
+    return plc::bad_argument("pyramid, run: must not be NULL");
+  }
+  plc_parameters p;
+  plc_extras e;
+  if (Status s = plc::take_struct(parameters, plc_parameters_defaults, "parameters", p); !s.ok()) {
+    return s;
+  }
+  if (Status s = plc::check_parameters(p); !s.ok()) return s;
+  if (Status s = plc::check_agreement(*pyramid->data, p); !s.ok()) return s;
+  plc_image mask;
+  if (Status s = plc::check_extras(extras, p, pyramid->data->volume->view, e, mask); !s.ok()) {
+    return s;
+  }
+  made = std::make_unique<plc_run>(context->host);
+  return made->run.prepare(pyramid->data, plc::borrowed(pyramid->data->images), plc::Lasting::kRun,
+                           p, e);
+}
+
+}  // namespace
+
+extern "C" {
+
+plc_status plc_run_create(plc_context* context, const plc_pyramid* pyramid,
+                          const plc_parameters* parameters, const plc_extras* extras,
+                          plc_run** run) {
+  if (run != nullptr) *run = nullptr;
+  return plc::guarded(context, [&]() -> Status {
+    std::unique_ptr<plc_run> made;
+    if (Status s = new_run(context, pyramid, parameters, extras, run, made); !s.ok()) return s;
+    if (Status s = made->run.start(); !s.ok()) return s;
+    *run = made.release();
+    return {};
+  });
+}
+
+plc_status plc_run_restore(plc_context* context, const plc_pyramid* pyramid,
+                           const plc_parameters* parameters, const plc_extras* extras,
+                           const void* state, size_t size, plc_run** run) {
+  if (run != nullptr) *run = nullptr;
+  return plc::guarded(context, [&]() -> Status {
+    if (state == nullptr) return plc::bad_argument("state: must not be NULL");
+    std::unique_ptr<plc_run> made;
+    if (Status s = new_run(context, pyramid, parameters, extras, run, made); !s.ok()) return s;
+    if (Status s = made->run.restore(static_cast<const uint8_t*>(state), size); !s.ok()) return s;
+    *run = made.release();
+    return {};
+  });
+}
+
+void plc_run_destroy(plc_run* run) {
+  delete run;
+}
+
+plc_status plc_run_advance(plc_context* context, plc_run* run, plc_amount amount,
+                           plc_run_state* state) {
+  return plc::guarded(context, [&]() -> Status {
+    if (run == nullptr) return plc::bad_argument("run: must not be NULL");
+    if (amount < PLC_ONE_ITERATION || amount > PLC_ALL_LEVELS) {
+      return plc::bad_argument("amount: not a plc_amount");
+    }
+    if (state != nullptr) {
+      if (Status s = plc::check_output(state, "state"); !s.ok()) return s;
+    }
+    if (Status s = run->run.advance(static_cast<plc::Amount>(amount)); !s.ok()) return s;
+    if (state != nullptr) plc::give_struct(run->run.state(), state);
+    return {};
+  });
+}
+
+plc_status plc_run_surface(plc_context* context, const plc_run* run, plc_surface** surface) {
+  if (surface != nullptr) *surface = nullptr;
+  return plc::guarded(context, [&]() -> Status {
+    if (run == nullptr || surface == nullptr) {
+      return plc::bad_argument("run, surface: must not be NULL");
+    }
+    if (Status s = run->run.usable(); !s.ok()) return s;
+    *surface = run->run.surface().release();
+    return {};
+  });
+}
+
+plc_status plc_run_save(plc_context* context, const plc_run* run, void* state, size_t capacity,
+                        size_t* size) {
+  return plc::guarded(context, [&]() -> Status {
+    if (run == nullptr || size == nullptr) {
+      return plc::bad_argument("run, size: must not be NULL");
+    }
+    if (Status s = run->run.usable(); !s.ok()) return s;
+    plc::StateWriter writer;
+    run->run.save(writer);
+    const plc::Buffer<uint8_t>& bytes = writer.bytes();
+    if (state == nullptr && capacity == 0) {
+      *size = bytes.size();
+      return {};
+    }
+    if (Status s = plc::check_room("state", state, static_cast<int64_t>(capacity),
+                                   static_cast<int64_t>(bytes.size()));
+        !s.ok()) {
+      return s;
+    }
+    *size = bytes.size();
+    std::memcpy(state, bytes.data(), bytes.size());
+    return {};
+  });
+}
+
+}  // extern "C"

@@ -1,0 +1,100 @@
+// A recovery between two iterations as bytes and back.
+#include <type_traits>
+
+#include "engine/recovery.h"
+
+namespace plc {
+
+namespace {
+
+// visit(field) for every field, in this order.
+template <typename Record, typename Visit>
+void visit_record(Record& r, const Visit& visit) {
+  visit(r.level);
+  visit(r.delta);
+  visit(r.iterations);
+  visit(r.vertices);
+  visit(r.converged);
+  visit(r.energy);
+  visit(r.speed);
+  for (auto* x : {&r.seconds.topology, &r.seconds.normals, &r.seconds.dynamics, &r.seconds.total}) {
+    visit(*x);
+  }
+  auto& o = r.operations;
+  for (auto* n : {&o.creation, &o.inversion, &o.deletion, &o.annular, &o.axial, &o.tetrahedron,
+                  &o.refinement, &o.deferred, &o.refused, &o.reverted, &o.moves, &o.checks}) {
+    visit(*n);
+  }
+  visit(r.late.bubbles);
+  visit(r.late.cavities);
+  visit(r.late.volume);
+}
+
+template <typename Round, typename Visit>
+void visit_round(Round& r, const Visit& visit) {
+  for (auto* n : {&r.number, &r.iteration, &r.calm, &r.confirmation.since,
+                  &r.confirmation.not_before, &r.repairs}) {
+    visit(*n);
+  }
+  visit(r.first_energy);
+}
+
+template <typename Progress, typename Visit>
+void visit_progress(Progress& p, const Visit& visit) {
+  for (auto* n : {&p.level, &p.levels, &p.iteration}) visit(*n);
+  visit(p.vertices);
+  for (auto* x : {&p.energy, &p.speed, &p.fraction}) visit(*x);
+}
+
+}  // namespace
+
+void Recovery::save(StateWriter& to) const {
+  const auto add = [&](const auto& value) { to.add(value); };
+  add(level_);
+  add(entered_);
+  add(phase_);
+  add(done_);
+  add(energy_);
+  visit_round(round_, add);
+  visit_progress(progress_, add);
+  add(static_cast<uint32_t>(records_.size()));
+  for (const LevelRecord& r : records_) visit_record(r, add);
+  add(tried_.has_image());
+  if (tried_.has_image()) tried_.save(to);
+  mesh_.save(to);
+  evolution_.save(to);
+}
+
+bool Recovery::restore(StateReader& from) {
+  const auto read = [&](auto& value) { from.read(value); };
+  read(level_);
+  read(entered_);
+  from.read(phase_, Phase::kRoundEnd);
+  read(done_);
+  read(energy_);
+  visit_round(round_, read);
+  visit_progress(progress_, read);
+  uint32_t records = 0;
+  read(records);
+  from.demand(level_ >= 0 && level_ <= levels_ && entered_ >= level_ && entered_ <= levels_ &&
+              records >= 1 && records <= static_cast<uint32_t>(levels_) + 1);
+  if (!from.ok()) return false;
+  records_.resize(records);
+  for (LevelRecord& r : records_) visit_record(r, read);
+  mesh_.clear();
+  enter(entered_);
+  if (!restore_tried(from) || !mesh_.restore(from)) return false;
+  evolution_.restore(from);
+  if (!from.ok()) return false;
+  return phase_ == Phase::kStart || build_gradient_image().ok();
+}
+
+bool Recovery::restore_tried(StateReader& from) {
+  bool has_image = false;
+  from.read(has_image);
+  tried_ = has_image ? VoxelSet(guide_.image.dims) : VoxelSet();
+  if (has_image) tried_.restore(from);
+  return from.ok();
+}
+
+}  // namespace plc

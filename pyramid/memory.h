@@ -1,0 +1,97 @@
+// Where the memory of a context comes from, how much of it there is, and how much there may be.
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <type_traits>
+#include <vector>
+
+namespace plc {
+
+// Counts what it gives. Thread-safe. What was allocated must be released before it goes.
+class Memory {
+ public:
+  using Allocate = void* (*)(size_t size, size_t alignment, void* user);
+  using Release = void (*)(void* data, size_t size, size_t alignment, void* user);
+
+  // Both null: the system's allocator (mimalloc where there is one).
+  struct Hooks {
+    Allocate allocate = nullptr;
+    Release release = nullptr;
+    void* user = nullptr;
+  };
+
+  Memory() = default;
+  // limit: bytes at a time; 0: none.
+  Memory(const Hooks& hooks, int64_t limit) : hooks_(hooks), limit_(limit) {}
+  Memory(const Memory&) = delete;
+  Memory& operator=(const Memory&) = delete;
+
+  // Throws std::bad_alloc where there is none, or not within the limit. alignment: a power of two.
+  void* allocate(size_t size, size_t alignment);
+  void release(void* data, size_t size, size_t alignment) noexcept;
+  int64_t now() const { return now_.load(std::memory_order_relaxed); }
+  int64_t peak() const { return peak_.load(std::memory_order_relaxed); }
+
+  // What buffers of this thread are allocated from; where no MemoryScope says so, the system's.
+  static Memory& current();
+
+ private:
+  friend class MemoryScope;
+  static thread_local Memory* current_;
+
+  Hooks hooks_;
+  int64_t limit_ = 0;
+  std::atomic<int64_t> now_{0};
+  std::atomic<int64_t> peak_{0};
+};
+
+// Makes a memory the current one of this thread for as long as the scope lives.
+class MemoryScope {
+ public:
+  explicit MemoryScope(Memory& memory) : before_(Memory::current_) { Memory::current_ = &memory; }
+  ~MemoryScope() { Memory::current_ = before_; }
+  MemoryScope(const MemoryScope&) = delete;
+  MemoryScope& operator=(const MemoryScope&) = delete;
+
+ private:
+  Memory* before_;
+};
+
+// For standard containers: the memory that was the current one when the container was made.
+template <typename T>
+class MemoryAllocator {
+ public:
+  using value_type = T;
+  using propagate_on_container_move_assignment = std::true_type;
+  using propagate_on_container_swap = std::true_type;
+  using is_always_equal = std::false_type;
+
+  MemoryAllocator() : memory_(&Memory::current()) {}
+  template <typename U>
+  MemoryAllocator(const MemoryAllocator<U>& other) : memory_(other.memory()) {}
+
+  T* allocate(size_t n) {
+    if (n > static_cast<size_t>(-1) / 2 / sizeof(T)) throw std::bad_alloc();
+    return static_cast<T*>(memory_->allocate(n * sizeof(T), alignment()));
+  }
+  void deallocate(T* data, size_t n) noexcept {
+    memory_->release(data, n * sizeof(T), alignment());
+  }
+  MemoryAllocator select_on_container_copy_construction() const { return {}; }
+  Memory* memory() const { return memory_; }
+  template <typename U>
+  bool operator==(const MemoryAllocator<U>& other) const {
+    return memory_ == other.memory();
+  }
+
+ private:
+  static constexpr size_t alignment() { return alignof(T) < 8 ? 8 : alignof(T); }
+  Memory* memory_;
+};
+
+template <typename T>
+using Vector = std::vector<T, MemoryAllocator<T>>;
+
+}  // namespace plc

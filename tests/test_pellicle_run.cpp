@@ -1,0 +1,467 @@
+// Volumes, pyramids and runs of the C API: the extraction in steps of any size.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/pellicle.h"
+#include "tests/sample_api.h"
+#include "tests/sample_hosts.h"
+
+namespace {
+
+using Catch::Matchers::Contains;
+using samples::Context;
+using samples::Pyramid;
+using samples::Run;
+using samples::Surface;
+using samples::VolumeHandle;
+
+// Two balls that overlap, so that the topology changes, and a detached one for a late bubble.
+samples::Volume scene() {
+  return samples::sampled(samples::empty_volume({36, 24, 22}), [](const samples::Point& p) {
+    const auto ball = [&](double x, double r) {
+      return 1 - samples::norm(p[0] - x, p[1], p[2]) / (2 * r);
+    };
+    return std::max({0.0, ball(-9, 6), ball(1, 5), ball(13, 3)});
+  });
+}
+
+plc_parameters scene_parameters() {
+  plc_parameters p = samples::parameters(0.5, 2);
+  p.max_iterations = 120;
+  return p;
+}
+
+VolumeHandle volume_of(plc_context* context, const plc_image& image,
+                       plc_ownership ownership = PLC_BORROW) {
+  plc_volume* volume = nullptr;
+  const plc_status status = plc_volume_create(context, &image, ownership, &volume);
+  INFO(plc_context_message(context));
+  REQUIRE(status == PLC_OK);
+  return VolumeHandle(volume);
+}
+
+Pyramid pyramid_of(plc_context* context, const plc_image& image, const plc_parameters& p) {
+  plc_pyramid* pyramid = nullptr;
+  const VolumeHandle volume = volume_of(context, image);
+  const plc_status status = plc_pyramid_create(context, volume.get(), &p, &pyramid);
+  INFO(plc_context_message(context));
+  REQUIRE(status == PLC_OK);
+  return Pyramid(pyramid);
+}
+
+Run run_of(plc_context* context, const plc_pyramid* pyramid, const plc_parameters& p,
+           const plc_extras* extras = nullptr) {
+  plc_run* run = nullptr;
+  const plc_status status = plc_run_create(context, pyramid, &p, extras, &run);
+  INFO(plc_context_message(context));
+  REQUIRE(status == PLC_OK);
+  return Run(run);
+}
+
+plc_run_state advance(plc_context* context, plc_run* run, plc_amount amount) {
+  plc_run_state state{};
+  state.struct_size = sizeof state;
+  const plc_status status = plc_run_advance(context, run, amount, &state);
+  INFO(plc_context_message(context));
+  REQUIRE(status == PLC_OK);
+  return state;
+}
+
+Surface surface_of(plc_context* context, const plc_run* run) {
+  plc_surface* surface = nullptr;
+  REQUIRE(plc_run_surface(context, run, &surface) == PLC_OK);
+  return Surface(surface);
+}
+
+uint64_t hash_now(plc_context* context, const plc_run* run) {
+  return plc_surface_hash(surface_of(context, run).get());
+}
+
+std::vector<uint8_t> saved(plc_context* context, const plc_run* run) {
+  size_t size = 0;
+  REQUIRE(plc_run_save(context, run, nullptr, 0, &size) == PLC_OK);
+  std::vector<uint8_t> state(size);
+  REQUIRE(plc_run_save(context, run, state.data(), state.size(), &size) == PLC_OK);
+  REQUIRE(size == state.size());
+  return state;
+}
+
+plc_status restore(plc_context* context, const plc_pyramid* pyramid, const plc_parameters& p,
+                   const std::vector<uint8_t>& state, Run& run,
+                   const plc_extras* extras = nullptr) {
+  plc_run* restored = nullptr;
+  const plc_status status =
+      plc_run_restore(context, pyramid, &p, extras, state.data(), state.size(), &restored);
+  run.reset(restored);
+  CHECK((status == PLC_OK) == (restored != nullptr));
+  return status;
+}
+
+struct Scene {
+  samples::Volume volume = scene();
+  plc_image image = samples::image_of(volume);
+  plc_parameters parameters = scene_parameters();
+};
+
+}  // namespace
+
+TEST_CASE("a run in iterations, in levels and at once is the extraction", "[pellicle_run]") {
+  const Scene s;
+  const Context context = samples::make_context(2);
+  const uint64_t whole =
+      plc_surface_hash(samples::extract(context.get(), s.image, s.parameters).get());
+  const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
+  for (const plc_amount amount : {PLC_ONE_ITERATION, PLC_ONE_LEVEL, PLC_ALL_LEVELS}) {
+    const Run run = run_of(context.get(), pyramid.get(), s.parameters);
+    int calls = 0;
+    plc_run_state state{};
+    while (state.done == 0) {
+      state = advance(context.get(), run.get(), amount);
+      ++calls;
+      if (amount == PLC_ONE_LEVEL) CHECK(state.between_levels == 1);
+    }
+    const Surface surface = surface_of(context.get(), run.get());
+    CHECK(plc_surface_hash(surface.get()) == whole);
+    int64_t iterations = 0;
+    for (int i = 0; i < plc_surface_level_count(surface.get()); ++i) {
+      iterations += samples::level_of(surface.get(), i).iterations;
+    }
+    const int64_t expected = amount == PLC_ALL_LEVELS  ? 1
+                             : amount == PLC_ONE_LEVEL ? 3
+                                                       : iterations;
+    CHECK(calls == expected);
+    CHECK(state.progress.level == 0);
+    CHECK(state.progress.fraction > 0.9);
+    // Done is done.
+    CHECK(advance(context.get(), run.get(), amount).done == 1);
+    CHECK(hash_now(context.get(), run.get()) == whole);
+  }
+}
+
+TEST_CASE("the surface of a run is valid from the start on and after every iteration",
+          "[pellicle_run]") {
+  const Scene s;
+  const Context context = samples::make_context();
+  const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
+  const Run run = run_of(context.get(), pyramid.get(), s.parameters);
+  CHECK(plc_surface_vertex_count(surface_of(context.get(), run.get()).get()) > 0);
+  plc_run_state state{};
+  while (state.done == 0) {
+    const Surface surface = surface_of(context.get(), run.get());
+    plc_check check{};
+    check.struct_size = sizeof check;
+    REQUIRE(plc_surface_check(context.get(), surface.get(), &check) == PLC_OK);
+    REQUIRE(check.valid == 1);
+    state = advance(context.get(), run.get(), PLC_ONE_ITERATION);
+  }
+}
+
+TEST_CASE("a saved run goes on with the same bits, wherever it was saved", "[pellicle_run]") {
+  const Scene s;
+  const Context one = samples::make_context(1), other = samples::make_context(3, PLC_SIMD_SCALAR);
+  const Pyramid pyramid = pyramid_of(one.get(), s.image, s.parameters);
+  const Pyramid again = pyramid_of(other.get(), s.image, s.parameters);
+  const Run run = run_of(one.get(), pyramid.get(), s.parameters);
+  Run follower;
+  plc_run_state state{};
+  for (int i = 0; state.done == 0; ++i) {
+    // Every seventh iteration the follower starts anew from the state, in another context.
+    if (i % 7 == 0) {
+      REQUIRE(restore(other.get(), again.get(), s.parameters, saved(one.get(), run.get()),
+                      follower) == PLC_OK);
+    }
+    state = advance(one.get(), run.get(), PLC_ONE_ITERATION);
+    const plc_run_state there = advance(other.get(), follower.get(), PLC_ONE_ITERATION);
+    INFO("iteration " << i << ", level " << state.progress.level);
+    REQUIRE(there.done == state.done);
+    REQUIRE(there.progress.energy == state.progress.energy);
+    REQUIRE(hash_now(other.get(), follower.get()) == hash_now(one.get(), run.get()));
+  }
+}
+
+TEST_CASE("what sleeps is asleep in a restored run", "[pellicle_run]") {
+  // The outside is calm long before the bottom of the hole is reached.
+  samples::Volume volume =
+      samples::sampled(samples::empty_volume({40, 40, 40}), [](const samples::Point& p) {
+        const double ball = 15 - samples::norm(p[0], p[1], p[2]);
+        const double hole = std::max(samples::norm(p[0], p[1], 0) - 5, -10 - p[2]);
+        return std::clamp(0.5 + std::min(ball, hole) / 4, 0.0, 1.0);
+      });
+  const plc_image image = samples::image_of(volume);
+  plc_parameters p = samples::parameters(0.5, 1);
+  const Context context = samples::make_context(2);
+  const Pyramid pyramid = pyramid_of(context.get(), image, p);
+  const Run run = run_of(context.get(), pyramid.get(), p);
+  plc_run_state state{};
+  for (int i = 0; state.done == 0; ++i) {
+    Run follower;
+    if (i % 5 == 0) {
+      REQUIRE(restore(context.get(), pyramid.get(), p, saved(context.get(), run.get()), follower) ==
+              PLC_OK);
+    }
+    state = advance(context.get(), run.get(), PLC_ONE_ITERATION);
+    if (follower == nullptr) continue;
+    const plc_run_state there = advance(context.get(), follower.get(), PLC_ONE_ITERATION);
+    INFO("iteration " << i);
+    REQUIRE(there.progress.energy == state.progress.energy);
+    REQUIRE(hash_now(context.get(), follower.get()) == hash_now(context.get(), run.get()));
+  }
+  // Some did sleep.
+  const auto moves = [](const plc_surface* surface) {
+    const plc_level_report level = samples::level_of(surface, 1);
+    return level.moves / level.iterations;
+  };
+  p.sleeping = 0;
+  CHECK(moves(surface_of(context.get(), run.get()).get()) <
+        moves(samples::extract(context.get(), image, p).get()) * 9 / 10);
+}
+
+TEST_CASE("a state that is none, or of something else, is refused in words", "[pellicle_run]") {
+  const Scene s;
+  const Context context = samples::make_context();
+  const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
+  const Run run = run_of(context.get(), pyramid.get(), s.parameters);
+  advance(context.get(), run.get(), PLC_ONE_LEVEL);
+  const std::vector<uint8_t> state = saved(context.get(), run.get());
+  Run none;
+  const auto refused = [&](const std::vector<uint8_t>& bytes, const plc_pyramid* of,
+                           const plc_parameters& p) {
+    CHECK(restore(context.get(), of, p, bytes, none) == PLC_INVALID_DATA);
+    return std::string(plc_context_message(context.get()));
+  };
+  CHECK(refused({1, 2, 3}, pyramid.get(), s.parameters) == "state: truncated");
+  CHECK(refused(std::vector<uint8_t>(100), pyramid.get(), s.parameters) ==
+        "state: not one of a run");
+  std::vector<uint8_t> altered = state;
+  altered[altered.size() / 2] ^= 1;
+  CHECK(refused(altered, pyramid.get(), s.parameters) == "state: truncated or altered");
+  CHECK(refused({state.begin(), state.end() - 8}, pyramid.get(), s.parameters) ==
+        "state: truncated or altered");
+  altered = state;
+  altered[8] ^= 1;
+  CHECK(refused(altered, pyramid.get(), s.parameters) ==
+        "state: of another version of the library");
+  const std::string other = "state: of another image, other parameters or other extras";
+  plc_parameters softer = s.parameters;
+  softer.curvature *= 2;
+  CHECK(refused(state, pyramid.get(), softer) == other);
+  Scene changed;
+  changed.volume.values[1000] += 0.001F;
+  const Pyramid of_changed = pyramid_of(context.get(), changed.image, s.parameters);
+  CHECK(refused(state, of_changed.get(), s.parameters) == other);
+  plc_extras extras = samples::no_extras();
+  const plc_pin pin{{0, 0, 0}, 1};
+  extras.pins = &pin;
+  extras.pin_count = 1;
+  CHECK(restore(context.get(), pyramid.get(), s.parameters, state, none, &extras) ==
+        PLC_INVALID_DATA);
+  // Room that is too small.
+  size_t size = 0;
+  std::vector<uint8_t> small(10, 7);
+  CHECK(plc_run_save(context.get(), run.get(), small.data(), small.size(), &size) ==
+        PLC_INVALID_ARGUMENT);
+  CHECK(small == std::vector<uint8_t>(10, 7));
+}
+
+TEST_CASE("a run that was cancelled goes on as if nothing had been", "[pellicle_run]") {
+  const Scene s;
+  const Context context = samples::make_context();
+  const uint64_t whole =
+      plc_surface_hash(samples::extract(context.get(), s.image, s.parameters).get());
+  struct Stop {
+    int calls = 0, every = 0;
+  } stop{0, 13};
+  plc_extras extras = samples::no_extras();
+  extras.progress = [](const plc_progress*, void* user) {
+    auto& told = *static_cast<Stop*>(user);
+    return ++told.calls % told.every == 0 ? 1 : 0;
+  };
+  extras.progress_user = &stop;
+  const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
+  const Run run = run_of(context.get(), pyramid.get(), s.parameters, &extras);
+  int cancelled = 0;
+  plc_status status = PLC_CANCELLED;
+  while (status == PLC_CANCELLED) {
+    status = plc_run_advance(context.get(), run.get(), PLC_ALL_LEVELS, nullptr);
+    cancelled += status == PLC_CANCELLED ? 1 : 0;
+  }
+  CHECK(status == PLC_OK);
+  CHECK(cancelled == stop.calls / stop.every);
+  CHECK(cancelled > 3);
+  CHECK(hash_now(context.get(), run.get()) == whole);
+}
+
+TEST_CASE("a force that cancels, in any of the four calls, leaves the iteration undone",
+          "[pellicle_run]") {
+  const samples::Volume volume = samples::ball({24, 24, 24});
+  const plc_image image = samples::image_of(volume);
+  const plc_parameters p = samples::gentle();
+  const Context context = samples::make_context();
+  const Pyramid pyramid = pyramid_of(context.get(), image, p);
+  int calls = 0, refuse = 0;
+  samples::Host host;
+  host.force = [&](const plc_force_points& points, float* forces) {
+    for (int64_t i = 0; i < 3 * points.count; ++i) forces[i] = 0.02F * points.normals[i];
+    return ++calls == refuse ? 1 : 0;
+  };
+  plc_extras extras = samples::extras_of(host);
+  const Run undisturbed = run_of(context.get(), pyramid.get(), p, &extras);
+  const Run run = run_of(context.get(), pyramid.get(), p, &extras);
+  for (int i = 0; i < 12; ++i) {
+    advance(context.get(), undisturbed.get(), PLC_ONE_ITERATION);
+    const uint64_t before = hash_now(context.get(), run.get());
+    calls = 0;
+    refuse = 1 + i % 4;
+    CHECK(plc_run_advance(context.get(), run.get(), PLC_ONE_ITERATION, nullptr) == PLC_CANCELLED);
+    CHECK(hash_now(context.get(), run.get()) == before);
+    refuse = 0;
+    advance(context.get(), run.get(), PLC_ONE_ITERATION);
+    CHECK(hash_now(context.get(), run.get()) == hash_now(context.get(), undisturbed.get()));
+  }
+}
+
+TEST_CASE("a run that has failed has ended, and says so", "[pellicle_run]") {
+  const samples::Volume volume = samples::ball({24, 24, 24});
+  const plc_image image = samples::image_of(volume);
+  const plc_parameters p = samples::gentle();
+  const Context context = samples::make_context();
+  const Pyramid pyramid = pyramid_of(context.get(), image, p);
+  samples::Host host;
+  host.force = [](const plc_force_points&, float* forces) {
+    forces[0] = NAN;
+    return 0;
+  };
+  const plc_extras extras = samples::extras_of(host);
+  const Run run = run_of(context.get(), pyramid.get(), p, &extras);
+  CHECK(plc_run_advance(context.get(), run.get(), PLC_ALL_LEVELS, nullptr) == PLC_INVALID_ARGUMENT);
+  CHECK_THAT(plc_context_message(context.get()), Contains("not finite"));
+  CHECK(plc_run_advance(context.get(), run.get(), PLC_ALL_LEVELS, nullptr) == PLC_INVALID_ARGUMENT);
+  CHECK_THAT(plc_context_message(context.get()), Contains("ended by an error"));
+  plc_surface* surface = nullptr;
+  CHECK(plc_run_surface(context.get(), run.get(), &surface) == PLC_INVALID_ARGUMENT);
+  size_t size = 0;
+  CHECK(plc_run_save(context.get(), run.get(), nullptr, 0, &size) == PLC_INVALID_ARGUMENT);
+}
+
+TEST_CASE("a run cannot be used from within its own callbacks", "[pellicle_run]") {
+  const Scene s;
+  const Context context = samples::make_context(), other = samples::make_context();
+  const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
+  struct Inner {
+    plc_context* context;
+    plc_run* run = nullptr;
+    plc_status status = PLC_OK;
+  } inner{other.get()};
+  plc_extras extras = samples::no_extras();
+  extras.progress = [](const plc_progress*, void* user) {
+    auto& i = *static_cast<Inner*>(user);
+    i.status = plc_run_advance(i.context, i.run, PLC_ONE_ITERATION, nullptr);
+    return 0;
+  };
+  extras.progress_user = &inner;
+  const Run run = run_of(context.get(), pyramid.get(), s.parameters, &extras);
+  inner.run = run.get();
+  advance(context.get(), run.get(), PLC_ONE_ITERATION);
+  CHECK(inner.status == PLC_INVALID_ARGUMENT);
+  CHECK_THAT(plc_context_message(other.get()), Contains("middle of a call"));
+}
+
+TEST_CASE("handles go in any order", "[pellicle_run]") {
+  const Scene s;
+  Context context = samples::make_context();
+  VolumeHandle volume = volume_of(context.get(), s.image, PLC_COPY);
+  plc_pyramid* made = nullptr;
+  REQUIRE(plc_pyramid_create(context.get(), volume.get(), &s.parameters, &made) == PLC_OK);
+  Pyramid pyramid(made);
+  volume.reset();
+  Run run = run_of(context.get(), pyramid.get(), s.parameters);
+  pyramid.reset();
+  Surface surface = surface_of(context.get(), run.get());
+  context.reset();
+  const Context other = samples::make_context();
+  // What the first context made is still of use with another one.
+  CHECK(advance(other.get(), run.get(), PLC_ONE_LEVEL).between_levels == 1);
+  run.reset();
+  CHECK(plc_surface_vertex_count(surface.get()) > 0);
+  CHECK(samples::positions(surface.get(), PLC_SPACE_LPS).size() > 0);
+}
+
+TEST_CASE("one pyramid serves several runs, with other coefficients", "[pellicle_run]") {
+  const Scene s;
+  const Context context = samples::make_context();
+  const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
+  plc_parameters softer = s.parameters;
+  softer.curvature = 0.3;
+  plc_parameters derived;
+  plc_parameters_defaults(&derived);
+  REQUIRE(plc_pyramid_parameters(context.get(), pyramid.get(), &derived) == PLC_OK);
+  derived.curvature = 0.3;
+  for (const plc_parameters& p : {s.parameters, softer, derived}) {
+    const Run run = run_of(context.get(), pyramid.get(), p);
+    advance(context.get(), run.get(), PLC_ALL_LEVELS);
+    plc_parameters alone = p;
+    CHECK(hash_now(context.get(), run.get()) ==
+          plc_surface_hash(samples::extract(context.get(), s.image, alone).get()));
+  }
+  // What the pyramid was made with is not the run's to change.
+  for (const auto& change : std::vector<std::function<void(plc_parameters&)>>{
+           [](auto& p) { p.iso = 0.4; }, [](auto& p) { p.levels = 1; },
+           [](auto& p) { p.window_low = -1; }, [](auto& p) { p.reduction = 1.5; },
+           [](auto& p) { p.pad_value = -2; }, [](auto& p) { p.inside_below = 1; }}) {
+    plc_parameters p = s.parameters;
+    change(p);
+    plc_run* run = nullptr;
+    CHECK(plc_run_create(context.get(), pyramid.get(), &p, nullptr, &run) == PLC_INVALID_ARGUMENT);
+    CHECK_THAT(plc_context_message(context.get()), Contains("pyramid was made with"));
+    CHECK(run == nullptr);
+  }
+}
+
+TEST_CASE("a pyramid tells its levels and their values", "[pellicle_run]") {
+  const Scene s;
+  const Context context = samples::make_context();
+  plc_parameters p = s.parameters;
+  p.window_low = 0;
+  p.window_high = 1;
+  plc_image image = s.image;
+  image.origin[0] = 10;
+  const Pyramid pyramid = pyramid_of(context.get(), image, p);
+  REQUIRE(plc_pyramid_levels(pyramid.get()) == 2);
+  double length = 0;
+  for (int h = 0; h <= 2; ++h) {
+    plc_pyramid_level level{};
+    level.struct_size = sizeof level;
+    REQUIRE(plc_pyramid_level_info(context.get(), pyramid.get(), h, &level) == PLC_OK);
+    const int64_t count = level.dims[0] * level.dims[1] * level.dims[2];
+    std::vector<float> values(static_cast<size_t>(count), -1);
+    CHECK(plc_pyramid_values(context.get(), pyramid.get(), h, values.data(), count - 1) ==
+          PLC_INVALID_ARGUMENT);
+    REQUIRE(plc_pyramid_values(context.get(), pyramid.get(), h, values.data(), count) == PLC_OK);
+    CHECK(*std::min_element(values.begin(), values.end()) >= 0);
+    CHECK(*std::max_element(values.begin(), values.end()) <= 1);
+    // The value at the middle of the first ball, in LPS, whatever the level.
+    const double ball[3] = {10 + 17.5 - 9, 11.5, 10.5};
+    int64_t at[3];
+    for (int a = 0; a < 3; ++a) {
+      at[a] = std::lround((ball[a] - level.origin[a]) / level.spacing[a]);
+    }
+    CHECK(values[static_cast<size_t>((at[2] * level.dims[1] + at[1]) * level.dims[0] + at[0])] >
+          0.6);
+    CHECK(level.unit == Approx(std::pow(p.reduction, h)));
+    // All levels fill the same box.
+    const double whole = level.spacing[0] * static_cast<double>(level.dims[0]);
+    if (h == 0) length = whole;
+    CHECK(whole == Approx(length));
+    CHECK(level.origin[0] - level.spacing[0] / 2 == Approx(10 - 6.5));
+  }
+  plc_pyramid_level level{};
+  level.struct_size = sizeof level;
+  CHECK(plc_pyramid_level_info(context.get(), pyramid.get(), 3, &level) == PLC_INVALID_ARGUMENT);
+  CHECK(std::string(plc_context_message(context.get())) == "level 3: the pyramid has 0 .. 2");
+  CHECK(plc_pyramid_levels(nullptr) == -1);
+}
