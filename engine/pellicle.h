@@ -4,23 +4,28 @@
  * "Deformable Meshes with Automated Topology Changes for Coarse-to-fine 3D Surface Extraction";
  * numbers in parentheses are its equations, section numbers are its sections.
  *
- *   plc_extract                                              an image to a surface, in one call
- *   plc_volume_create -> plc_pyramid_create -> plc_run_...   the same in steps of any size
+ *   plc_extract                                            an image to a surface, in one call
+ *   plc_volume_create, plc_pyramid_create, plc_run_create  the same in steps of any size
  *
- * Errors    Every function that can fail returns a plc_status; plc_context_message() then says in
- *           one line what was wrong. No function exits, prints, throws, or changes the locale, the
- *           floating-point environment or signals. NULL where it must not be is
- *           PLC_INVALID_ARGUMENT. After a failed call its outputs are unchanged or, where they are
- *           handles, NULL; every handle can still be used or destroyed.
- * Threads   A context, and what was made with it, may be used by one thread at a time; different
- *           contexts are independent and share nothing. Callbacks are made on the thread that
- *           called, but for those of plc_context_options, which say so. A callback may call any
- *           function with handles of another context, and of its own only those that it is told to.
- * Structs   start with struct_size: fill them with their _defaults function, then change fields.
- * For structs that are only written set struct_size = sizeof. A library newer than the header that
- * a host was built with takes what it does not get at its default. Handles   are freed with their
- * _destroy function, which takes NULL, in any order: what a handle needs of others it keeps alive.
- * What a host lends - voxels, allocator, threads - must outlive the handles that use it. Bits
+ * Errors: every function that can fail returns a plc_status; plc_context_message() then says in
+ * one line what was wrong. No function exits, prints, throws, or changes the locale, the
+ * floating-point environment or signals. NULL where it must not be is PLC_INVALID_ARGUMENT. After a
+ * failed call its outputs are unchanged or, where they are handles, NULL; every handle can still be
+ * used or destroyed.
+ *
+ * Threads: a context, and what was made with it, may be used by one thread at a time; different
+ * contexts are independent and share nothing. Callbacks are made on the thread that called, but for
+ * those of plc_context_options, which say so. A callback may use any handle but a run that is in
+ * the middle of a call.
+ *
+ * Structs start with struct_size: fill them with their _defaults function, then change fields. For
+ * structs that are only written set struct_size = sizeof. A library newer than the header that a
+ * host was built with takes what it does not get at its default.
+ *
+ * Handles are freed with their _destroy function, which takes NULL, in any order: what a handle
+ * needs of others it keeps alive. What a host lends - voxels, allocator, threads, log - must
+ * outlive the handles that use it.
+ *
  * Results are the same bits for any number of threads, any SIMD target and any allocator.
  */
 #ifndef PLC_PELLICLE_H
@@ -110,9 +115,10 @@ typedef void (*plc_log_fn)(plc_log_level level, const char* line, void* user);
 
 typedef struct plc_context_options {
   size_t struct_size;
-  int threads; /* 1 .. 1024: at most so many; 1 starts none; 0: those of the caller's oneTBB arena,
-                  by default one per core. Ignored with parallel_for */
-  plc_simd simd;                    /* must be available on this machine */
+  int threads;   /* 1 .. 1024: at most so many, and no more than oneTBB has for the process (one per
+                    core, unless the host says otherwise); 1 starts none; 0: those of the caller's
+                    oneTBB arena. Ignored with parallel_for */
+  plc_simd simd; /* must be available on this machine */
   plc_parallel_for_fn parallel_for; /* NULL: oneTBB */
   void* parallel_for_user;
   plc_allocate_fn allocate; /* images, vertices and all else that grows with them; NULL: mimalloc

@@ -194,6 +194,8 @@ TEST_CASE("what sleeps is asleep in a restored run", "[pellicle_run]") {
       });
   const plc_image image = samples::image_of(volume);
   plc_parameters p = samples::parameters(0.5, 1);
+  p.calm_speed = 1e-9;  // to the last iteration
+  p.max_iterations = 80;
   const Context context = samples::make_context(2);
   const Pyramid pyramid = pyramid_of(context.get(), image, p);
   const Run run = run_of(context.get(), pyramid.get(), p);
@@ -212,13 +214,10 @@ TEST_CASE("what sleeps is asleep in a restored run", "[pellicle_run]") {
     REQUIRE(hash_now(context.get(), follower.get()) == hash_now(context.get(), run.get()));
   }
   // Some did sleep.
-  const auto moves = [](const plc_surface* surface) {
-    const plc_level_report level = samples::level_of(surface, 1);
-    return level.moves / level.iterations;
-  };
+  const auto moves = [](const plc_surface* surface) { return samples::level_of(surface, 1).moves; };
   p.sleeping = 0;
   CHECK(moves(surface_of(context.get(), run.get()).get()) <
-        moves(samples::extract(context.get(), image, p).get()) * 9 / 10);
+        moves(samples::extract(context.get(), image, p).get()) * 3 / 4);
 }
 
 TEST_CASE("a state that is none, or of something else, is refused in words", "[pellicle_run]") {
