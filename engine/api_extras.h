@@ -1,10 +1,10 @@
 // From plc_extras to what the engine runs with: places in voxels, initial surfaces.
 #pragma once
-#include <vector>
 
 #include "engine/frame.h"
 #include "engine/pellicle.h"
 #include "engine/recovery.h"
+#include "pyramid/memory.h"
 #include "pyramid/status.h"
 #include "pyramid/volume.h"
 
@@ -21,8 +21,8 @@ void take_extras(const plc_extras& extras, const Frame& frame, RecoverySpec& spe
 
 // A mesh of one of the spaces in voxel indices: coordinates, and faces that stay outward.
 struct VoxelMesh {
-  std::vector<double> xyz;
-  std::vector<uint32_t> abc;
+  Vector<double> xyz;
+  Vector<uint32_t> abc;
 };
 VoxelMesh in_voxels(const Affine& to_space, const double* xyz, int64_t vertex_count,
                     const uint32_t* abc, int64_t face_count);

@@ -1,9 +1,9 @@
 #include "engine/api_force.h"
+#include "pyramid/memory.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <vector>
 
 namespace plc {
 
@@ -25,12 +25,12 @@ class HostForce {
 
   Status add(int level, const MeshSpace& space, const Mesh& mesh, const Packed* position,
              Streams3& force) const {
-    std::vector<uint32_t> ids;
+    Vector<uint32_t> ids;
     for (uint32_t v = 0; v < mesh.slots(); ++v) {
       if (mesh.alive(v)) ids.push_back(v);
     }
     const size_t n = ids.size();
-    std::vector<float> xyz(3 * n), normals(3 * n), forces(3 * n, 0.0F);
+    Vector<float> xyz(3 * n), normals(3 * n), forces(3 * n, 0.0F);
     constexpr size_t kChunk = 4096;
     executor_.run((n + kChunk - 1) / kChunk, [&](size_t chunk) {
       for (size_t i = chunk * kChunk; i < std::min(n, (chunk + 1) * kChunk); ++i) {

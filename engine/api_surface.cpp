@@ -8,6 +8,7 @@
 #include "engine/measures.h"
 #include "engine/mesh_check.h"
 #include "engine/state_hash.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -45,7 +46,7 @@ void write_positions(const plc_surface& surface, plc_space space, float* xyz) {
 
 void write_faces(const plc_surface& surface, plc_space space, uint32_t* abc) {
   const bool mirrored = affine_of(surface, space).mirrors();
-  const std::vector<uint32_t> faces = surface.mesh.faces();
+  const Vector<uint32_t> faces = surface.mesh.faces();
   for (size_t i = 0; i < faces.size(); i += 3) {
     *abc++ = faces[i];
     *abc++ = faces[mirrored ? i + 2 : i + 1];

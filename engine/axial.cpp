@@ -3,13 +3,14 @@
 #include <algorithm>
 
 #include "engine/constants.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
 namespace {
 
-std::vector<Vec3> intermediary_points(const Mesh& mesh, uint32_t u, const Neighbors& ring) {
-  std::vector<Vec3> points;
+Vector<Vec3> intermediary_points(const Mesh& mesh, uint32_t u, const Neighbors& ring) {
+  Vector<Vec3> points;
   for (const uint32_t a : ring) {
     points.push_back(mesh.at(u) + (mesh.at(a) - mesh.at(u)) * kAxialReach);
   }
@@ -18,10 +19,10 @@ std::vector<Vec3> intermediary_points(const Mesh& mesh, uint32_t u, const Neighb
 
 // The intermediary vertices of u: p_i on u-a_i, the quadrilateral p_i a_i a_i+1 p_i+1 cut along
 // p_i a_i+1. Their rings lack what takes the place of u.
-std::vector<uint32_t> create_intermediary(Mesh& mesh, uint32_t u, const Neighbors& ring,
-                                          const std::vector<Vec3>& points) {
+Vector<uint32_t> create_intermediary(Mesh& mesh, uint32_t u, const Neighbors& ring,
+                                     const Vector<Vec3>& points) {
   const uint32_t d = ring.size();
-  std::vector<uint32_t> p;
+  Vector<uint32_t> p;
   for (uint32_t i = 0; i < d; ++i) {
     const Vec3 speed =
         mesh.velocity.at(u) + (mesh.velocity.at(ring[i]) - mesh.velocity.at(u)) * kAxialReach;
@@ -35,8 +36,8 @@ std::vector<uint32_t> create_intermediary(Mesh& mesh, uint32_t u, const Neighbor
 }
 
 // The ring of p_i: p_i-1, a_i, a_i+1, p_i+1, then the other ends of its rungs.
-void set_intermediary_ring(Mesh& mesh, const std::vector<uint32_t>& p, uint32_t i,
-                           const Neighbors& ring, const std::vector<uint32_t>& across) {
+void set_intermediary_ring(Mesh& mesh, const Vector<uint32_t>& p, uint32_t i, const Neighbors& ring,
+                           const Vector<uint32_t>& across) {
   const auto d = static_cast<uint32_t>(p.size());
   Neighbors own;
   own.push_back(p[(i + d - 1) % d]);
@@ -61,21 +62,21 @@ AxialPlan plan_axial(const Mesh& mesh, uint32_t u, uint32_t v) {
   return plan;
 }
 
-std::vector<uint32_t> join(Mesh& mesh, const AxialPlan& plan) {
-  const std::vector<uint32_t> p = create_intermediary(mesh, plan.u, plan.ring_u, plan.p);
-  const std::vector<uint32_t> q = create_intermediary(mesh, plan.v, plan.ring_v, plan.q);
+Vector<uint32_t> join(Mesh& mesh, const AxialPlan& plan) {
+  const Vector<uint32_t> p = create_intermediary(mesh, plan.u, plan.ring_u, plan.p);
+  const Vector<uint32_t> q = create_intermediary(mesh, plan.v, plan.ring_v, plan.q);
   // The faces between successive rungs are (p_i, p_i+1, q_j) where i grows and (p_i, q_j-1, q_j)
   // where j falls: counter-clockwise from p_i+1 on, the rungs of p_i come in reverse strip order;
   // from q_j+1 on, those of q_j in strip order.
   const auto n = static_cast<uint32_t>(plan.rungs.size());
-  const auto set_rings = [&](const std::vector<uint32_t>& own, const Neighbors& ring,
-                             const std::vector<uint32_t>& other, bool of_p) {
+  const auto set_rings = [&](const Vector<uint32_t>& own, const Neighbors& ring,
+                             const Vector<uint32_t>& other, bool of_p) {
     for (uint32_t i = 0; i < own.size(); ++i) {
       const auto mine = [&](const Rung& r) { return (of_p ? r.i : r.j) == i; };
       // The rungs of one corner follow one another cyclically: start at the first of the run.
       uint32_t first = 0;
       while (!mine(plan.rungs[first]) || mine(plan.rungs[(first + n - 1) % n])) ++first;
-      std::vector<uint32_t> across;
+      Vector<uint32_t> across;
       for (uint32_t k = first; mine(plan.rungs[k % n]); ++k) {
         across.push_back(of_p ? other[plan.rungs[k % n].j] : other[plan.rungs[k % n].i]);
       }
@@ -87,7 +88,7 @@ std::vector<uint32_t> join(Mesh& mesh, const AxialPlan& plan) {
   set_rings(q, plan.ring_v, p, false);
   mesh.destroy(plan.u);
   mesh.destroy(plan.v);
-  std::vector<uint32_t> created = p;
+  Vector<uint32_t> created = p;
   created.insert(created.end(), q.begin(), q.end());
   return created;
 }

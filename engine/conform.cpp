@@ -7,7 +7,6 @@
 #include <queue>
 #include <string>
 #include <tuple>
-#include <vector>
 
 #include "engine/constants.h"
 #include "engine/creation.h"
@@ -16,6 +15,7 @@
 #include "engine/refinement.h"
 #include "engine/resolution.h"
 #include "engine/self_meeting.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -57,7 +57,7 @@ Status too_many_vertices() {
 
 // At least so many: no face within (2) is larger than the equilateral one.
 double vertices_needed(const Mesh& mesh) {
-  const std::vector<uint32_t> abc = mesh.faces();
+  const Vector<uint32_t> abc = mesh.faces();
   double area = 0;
   for (size_t i = 0; i < abc.size(); i += 3) {
     area += static_cast<double>(length(area_vector(mesh, abc[i], abc[i + 1], abc[i + 2]))) / 2;

@@ -2,12 +2,12 @@
 
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "engine/blocks.h"
 #include "engine/double3.h"
 #include "engine/mesh_topology.h"
 #include "engine/vertex_corners.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 namespace {
@@ -45,9 +45,9 @@ void add_face(const double* a, const double* b, const double* c, Star& star) {
 }
 
 // Vertices of edges that have not two faces: those are all 1.
-std::vector<uint8_t> border_vertices(const uint32_t* abc, size_t face_count, size_t vertex_count,
-                                     const Executor& executor) {
-  std::vector<uint8_t> border(vertex_count, 0);
+Vector<uint8_t> border_vertices(const uint32_t* abc, size_t face_count, size_t vertex_count,
+                                const Executor& executor) {
+  Vector<uint8_t> border(vertex_count, 0);
   const EdgeTable edges(abc, face_count, vertex_count, executor);
   edges.visit(0, vertex_count,
               [&](uint32_t low, uint32_t high, const EdgeUse* use, const EdgeUse* end) {
@@ -63,7 +63,7 @@ void vertex_curvature(const double* xyz, size_t vertex_count, const uint32_t* ab
                       double* area) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const VertexCorners corners(abc, face_count, vertex_count);
-  const std::vector<uint8_t> border = border_vertices(abc, face_count, vertex_count, executor);
+  const Vector<uint8_t> border = border_vertices(abc, face_count, vertex_count, executor);
   const auto point = [&](uint32_t corner) { return xyz + 3 * static_cast<size_t>(abc[corner]); };
   run_blocks(executor, vertex_count, kVertexBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t v = begin; v < end; ++v) {

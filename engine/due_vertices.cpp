@@ -5,6 +5,7 @@
 
 #include "engine/blocks.h"
 #include "engine/constants.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -12,7 +13,7 @@ void DueVertices::list_due() {
   list(all_blocks(), false);
 }
 
-void DueVertices::list_due(const std::vector<uint32_t>& blocks) {
+void DueVertices::list_due(const Vector<uint32_t>& blocks) {
   list(blocks, false);
 }
 
@@ -20,13 +21,13 @@ void DueVertices::list_all() {
   list(all_blocks(), true);
 }
 
-const std::vector<uint32_t>& DueVertices::all_blocks() {
+const Vector<uint32_t>& DueVertices::all_blocks() {
   blocks_.resize(mesh_.padded() / kRingLanes);
   std::iota(blocks_.begin(), blocks_.end(), 0U);
   return blocks_;
 }
 
-void DueVertices::list(const std::vector<uint32_t>& blocks, bool all) {
+void DueVertices::list(const Vector<uint32_t>& blocks, bool all) {
   lanes_.resize(blocks.size());
   first_due_.assign(block_count(blocks.size(), kTaskBlocks) + 1, 0);
   run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {

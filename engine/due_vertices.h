@@ -1,10 +1,10 @@
 // The slow-vertex rule (3.6): which vertices are due for a check of their constraints.
 #pragma once
 #include <cstdint>
-#include <vector>
 
 #include "engine/mesh.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -16,23 +16,23 @@ class DueVertices {
 
   // Lists those of all vertices, or of these blocks of kRingLanes; once per iteration.
   void list_due();
-  void list_due(const std::vector<uint32_t>& blocks);
+  void list_due(const Vector<uint32_t>& blocks);
   // Every living vertex is due.
   void list_all();
   // Ascending.
-  const std::vector<uint32_t>& list() const { return due_; }
+  const Vector<uint32_t>& list() const { return due_; }
 
  private:
-  const std::vector<uint32_t>& all_blocks();
-  void list(const std::vector<uint32_t>& blocks, bool all);
+  const Vector<uint32_t>& all_blocks();
+  void list(const Vector<uint32_t>& blocks, bool all);
   uint16_t due_lanes(uint32_t first, bool all);
 
   Mesh& mesh_;
   const Executor& executor_;
-  std::vector<uint32_t> due_;
-  std::vector<uint32_t> blocks_;     // all
-  std::vector<uint16_t> lanes_;      // per block: those that are due, as bits
-  std::vector<uint32_t> first_due_;  // per task
+  Vector<uint32_t> due_;
+  Vector<uint32_t> blocks_;     // all
+  Vector<uint16_t> lanes_;      // per block: those that are due, as bits
+  Vector<uint32_t> first_due_;  // per task
 };
 
 }  // namespace plc

@@ -9,6 +9,7 @@
 #include "kernels/gradient_force.h"
 #include "kernels/image_force.h"
 #include "kernels/ring_forces.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -335,7 +336,7 @@ void Dynamics::measure_rest_length(const Guide& guide) {
     return;
   }
   // Of the whole mesh, whatever sleeps.
-  std::vector<double> part(block_count(mesh_.padded(), kGrain));
+  Vector<double> part(block_count(mesh_.padded(), kGrain));
   run_blocks(schedule_, mesh_.padded(), kGrain, [&](size_t index, size_t begin, size_t end) {
     part[index] =
         kernels::edge_length_sum(simd_, mesh_.rings(), mesh_.packed.data(), guide.metric,
@@ -350,7 +351,7 @@ void Dynamics::measure_rest_length(const Guide& guide) {
 
 // The longest displacement of this step.
 float Dynamics::longest_move() const {
-  std::vector<float> part(tasks(), 0.0F);
+  Vector<float> part(tasks(), 0.0F);
   for_tasks([&](size_t index, const Blocks& blocks) {
     part[index] = kernels::max_squared(simd_, raw(std::as_const(mesh_.displacement)), blocks);
   });

@@ -13,6 +13,7 @@
 #include "kernels/guided_stage.h"
 #include "kernels/integrate.h"
 #include "kernels/simd.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -125,8 +126,8 @@ class Dynamics {
   double energy_ = 0;
   double speed_of_fastest_ = 0;
   Status status_;
-  std::vector<uint32_t> blocks_;             // ascending
-  std::vector<kernels::Movement> movement_;  // by task
+  Vector<uint32_t> blocks_;             // ascending
+  Vector<kernels::Movement> movement_;  // by task
   Streams3 force_, speed_, rate_;
   Streams3 metric_normal_, metric_step_;
   Streams3 user_force_;

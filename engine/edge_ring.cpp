@@ -5,6 +5,7 @@
 
 #include "engine/double3.h"
 #include "engine/mesh_topology.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 namespace {
@@ -72,9 +73,9 @@ EdgeRings::EdgeRings(const uint32_t* abc, size_t face_count, size_t vertex_count
   });
 }
 
-std::vector<uint8_t> bending_vertices(const double* xyz, const uint32_t* abc,
-                                      const VertexCorners& corners, const EdgeRings& edges) {
-  std::vector<uint8_t> bends(corners.vertex_count(), 0);
+Vector<uint8_t> bending_vertices(const double* xyz, const uint32_t* abc,
+                                 const VertexCorners& corners, const EdgeRings& edges) {
+  Vector<uint8_t> bends(corners.vertex_count(), 0);
   for (size_t v = 0; v < bends.size(); ++v) {
     if (!corners.of(v).empty()) bends[v] = may_bend(xyz, abc, corners.of(v), edges) ? 1 : 0;
   }

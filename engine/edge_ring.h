@@ -2,11 +2,11 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "engine/vertex_corners.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -25,7 +25,7 @@ class EdgeRings {
 
 // 0 for vertices that no shortest path needs to pass through: those whose faces are one closed fan
 // of at most 360 degrees or one open fan of at most 180. 1 for others, and at faces of no area.
-std::vector<uint8_t> bending_vertices(const double* xyz, const uint32_t* abc,
-                                      const VertexCorners& corners, const EdgeRings& edges);
+Vector<uint8_t> bending_vertices(const double* xyz, const uint32_t* abc,
+                                 const VertexCorners& corners, const EdgeRings& edges);
 
 }  // namespace plc

@@ -5,6 +5,7 @@
 #include "engine/constants.h"
 #include "engine/deletion.h"
 #include "engine/vertex_star.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -59,7 +60,7 @@ Proposal propose_inversion(const Mesh& mesh, const Edge& e) {
 Proposal propose_deletion(const Mesh& mesh, const Edge& e, Vec3 place) {
   Proposal proposal;
   const Neighbors ring = merged_ring(mesh, e);
-  std::vector<Vec3> around;
+  Vector<Vec3> around;
   for (const uint32_t v : ring) around.push_back(mesh.at(v));
   for (uint32_t k = 0; k < ring.size(); ++k) {
     const uint32_t next = k + 1 == ring.size() ? 0 : k + 1;
@@ -81,8 +82,8 @@ Proposal propose_annular(const Mesh& mesh, const Cycle& cycle,
     // The ring of a left copy is next, arc, previous; of a right one previous, arc, next.
     const uint32_t first = side + (side == 0 ? (i + 1) % 3 : (i + 2) % 3);
     const uint32_t last = side + (side == 0 ? (i + 2) % 3 : (i + 1) % 3);
-    std::vector<uint32_t> ring{id(first)};
-    std::vector<Vec3> place{copies[first].place};
+    Vector<uint32_t> ring{id(first)};
+    Vector<Vec3> place{copies[first].place};
     for (const uint32_t w : copies[copy].arc) {
       ring.push_back(w);
       place.push_back(mesh.at(w));
@@ -107,7 +108,7 @@ Proposal propose_axial(const Mesh& mesh, const AxialPlan& plan) {
   Proposal proposal;
   const uint32_t first_p = mesh.slots();
   const auto first_q = first_p + static_cast<uint32_t>(plan.p.size());
-  const auto collar = [&](const Neighbors& ring, const std::vector<Vec3>& points, uint32_t first) {
+  const auto collar = [&](const Neighbors& ring, const Vector<Vec3>& points, uint32_t first) {
     for (uint32_t i = 0; i < ring.size(); ++i) {
       const uint32_t j = i + 1 == ring.size() ? 0 : i + 1;
       proposal.faces.push_back(
@@ -166,7 +167,7 @@ bool EmbeddingGuard::embeds(const Mesh& mesh, const SpatialHash& hash, const Pro
 }
 
 bool EmbeddingGuard::embeds_beside(const Mesh& mesh, const Proposal& proposal,
-                                   const std::vector<uint32_t>& centres) {
+                                   const Vector<uint32_t>& centres) {
   take(proposal);
   return clear_of(mesh, proposal, centres.data(), centres.size(),
                   [](uint32_t, uint32_t, uint32_t) { return true; });

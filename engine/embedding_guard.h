@@ -1,13 +1,13 @@
 // Going past the paper: a transformation is refused when its new faces would meet the surface.
 #pragma once
 #include <array>
-#include <vector>
 
 #include "engine/annular.h"
 #include "engine/axial.h"
 #include "engine/box_lanes.h"
 #include "engine/spatial_hash.h"
 #include "engine/triangle_intersection.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -18,9 +18,9 @@ struct Proposal {
     std::array<uint32_t, 3> id;
     std::array<Vec3, 3> place;
   };
-  std::vector<Face> faces;
+  Vector<Face> faces;
   // Existing faces with any of these corners go, ...
-  std::vector<uint32_t> removed_corners;
+  Vector<uint32_t> removed_corners;
   // ... and those that have both ends of this edge.
   std::array<uint32_t, 2> removed_edge{~0U, ~0U};
   // The new faces are known to have an area and to meet each other nowhere (vertex_star.h).
@@ -41,8 +41,7 @@ class EmbeddingGuard {
   // beyond those that kFaceReach allows for may be overlooked.
   bool embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal);
   // Of the faces that stay only those around these vertices, and no new faces against each other.
-  bool embeds_beside(const Mesh& mesh, const Proposal& proposal,
-                     const std::vector<uint32_t>& centres);
+  bool embeds_beside(const Mesh& mesh, const Proposal& proposal, const Vector<uint32_t>& centres);
   // Around the new faces of the last call.
   const Box3& box() const { return box_; }
 
@@ -53,8 +52,8 @@ class EmbeddingGuard {
   bool clear_of(const Mesh& mesh, const Proposal& proposal, const uint32_t* ids, size_t count,
                 const Counts& counts) const;
 
-  std::vector<Triangle> faces_;  // the new ones
-  std::vector<FaceBox> boxes_;
+  Vector<Triangle> faces_;  // the new ones
+  Vector<FaceBox> boxes_;
   Box3 box_{};
   SpatialHash::Collected around_;
 };

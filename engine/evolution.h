@@ -7,6 +7,7 @@
 #include "engine/schedule.h"
 #include "engine/sleep.h"
 #include "engine/statistics.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -63,7 +64,7 @@ class Evolution {
   Dynamics dynamics_;
   MotionGuard guard_;
   Resolution resolution_;
-  std::vector<uint32_t> back_;  // vertices that the guard has taken back
+  Vector<uint32_t> back_;  // vertices that the guard has taken back
   uint32_t iteration_ = 0;
   PassObserver observer_;
 };

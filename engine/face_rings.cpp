@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/blocks.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -49,7 +50,7 @@ FaceRings::FaceRings(const uint32_t* abc, size_t face_count, size_t vertex_count
 
 void fill_from_rings(Mesh& mesh, const float* xyz, size_t vertex_count, const FaceRings& rings) {
   mesh.clear();
-  std::vector<uint32_t> id(vertex_count, 0);
+  Vector<uint32_t> id(vertex_count, 0);
   uint32_t used = 0;
   for (size_t v = 0; v < vertex_count; ++v) {
     id[v] = used;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "engine/blocks.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 namespace {
@@ -130,11 +130,11 @@ void FaceTree::build(const double* xyz, const uint32_t* abc, const uint32_t* ids
     }
   });
   // Levels of the top, then subtrees, then the boxes of the top from below.
-  std::vector<std::vector<Range>> levels = {{{0, 0, static_cast<uint32_t>(leaf_total)}}};
+  Vector<Vector<Range>> levels = {{{0, 0, static_cast<uint32_t>(leaf_total)}}};
   while (levels.back().size() < kSubtrees && levels.back().front().leaf_count > 4) {
-    const std::vector<Range>& level = levels.back();
+    const Vector<Range>& level = levels.back();
     executor.run(level.size(), [&](size_t i) { split(level[i]); });
-    std::vector<Range> next;
+    Vector<Range> next;
     for (const Range& r : level) {
       next.push_back(first_child(r));
       next.push_back(second_child(r));

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <queue>
-#include <vector>
 
 #include "engine/double3.h"
 #include "engine/edge_ring.h"
 #include "engine/mesh_topology.h"
 #include "engine/vertex_corners.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 namespace {
@@ -233,11 +233,11 @@ class Propagation {
   double* distance_;
   VertexCorners corners_;
   EdgeRings edges_;
-  std::vector<uint8_t> bends_;  // vertices that shortest paths may bend at
-  std::vector<Best> best_;      // per corner
+  Vector<uint8_t> bends_;  // vertices that shortest paths may bend at
+  Vector<Best> best_;      // per corner
   std::priority_queue<Event> queue_;
-  std::vector<Window> windows_;
-  std::vector<uint32_t> free_;  // unused places of windows_
+  Vector<Window> windows_;
+  Vector<uint32_t> free_;  // unused places of windows_
 };
 
 }  // namespace

@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "engine/blocks.h"
 #include "engine/face_rings.h"
 #include "kernels/image_value.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -44,10 +44,10 @@ class Lattice {
   size_t point(size_t x, size_t y) const { return y * size_[0] + x; }
 
   // A byte per point of slice z: 1 inside.
-  void classify(size_t z, std::vector<uint8_t>& inside) const {
+  void classify(size_t z, Vector<uint8_t>& inside) const {
     inside.assign(slice_points(), 0);
     if (z == 0 || z + 1 >= size_[2]) return;
-    std::vector<float> row(size_[0]);
+    Vector<float> row(size_[0]);
     for (size_t y = 1; y + 1 < size_[1]; ++y) {
       values_.row(voxel(y), voxel(z), row.data());
       uint8_t* to = inside.data() + point(1, y);
@@ -94,8 +94,8 @@ class Lattice {
 // visit(x, y, d) for every edge that begins in a slice and is crossed, in the order of ids. above:
 // the next slice.
 template <typename Visit>
-void visit_crossed(const Lattice& lattice, const std::vector<uint8_t>& inside,
-                   const std::vector<uint8_t>& above, const Visit& visit) {
+void visit_crossed(const Lattice& lattice, const Vector<uint8_t>& inside,
+                   const Vector<uint8_t>& above, const Visit& visit) {
   const size_t nx = lattice.columns();
   // Points of the last row and column are outside, and so are those that they would lead to.
   for (size_t y = 0; y + 1 < lattice.rows(); ++y) {
@@ -114,8 +114,8 @@ void visit_crossed(const Lattice& lattice, const std::vector<uint8_t>& inside,
 
 // Ids of the edges that begin in one slice: [point][d - 1], written where an edge is crossed.
 struct EdgeIds {
-  std::vector<uint8_t> inside;
-  std::vector<uint32_t> ids;
+  Vector<uint8_t> inside;
+  Vector<uint32_t> ids;
 };
 
 class Builder {
@@ -129,7 +129,7 @@ class Builder {
 
   Status count() {
     for_layers([&](size_t, size_t begin, size_t end) {
-      std::vector<uint8_t> inside, above;
+      Vector<uint8_t> inside, above;
       lattice_.classify(begin, inside);
       for (size_t z = begin; z < end; ++z) {
         lattice_.classify(z + 1, above);
@@ -163,7 +163,7 @@ class Builder {
         std::swap(lower, upper);
       }
     });
-    std::vector<uint32_t> abc;
+    Vector<uint32_t> abc;
     size_t count = 0;
     for (const auto& part : faces_) count += part.size();
     abc.reserve(3 * count);
@@ -188,7 +188,7 @@ class Builder {
     lattice_.classify(z, slice.inside);
     if (z == layers_) return;  // all outside: no edge begins here
     slice.ids.resize(lattice_.slice_points() * kDirections);
-    std::vector<uint8_t> above;
+    Vector<uint8_t> above;
     lattice_.classify(z + 1, above);
     auto id = static_cast<uint32_t>(first_id_[z]);
     visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, size_t d) {
@@ -198,7 +198,7 @@ class Builder {
 
   // The positions of the vertices of slice z.
   void place(size_t z, const EdgeIds& slice) {
-    std::vector<uint8_t> above;
+    Vector<uint8_t> above;
     lattice_.classify(z + 1, above);
     size_t id = first_id_[z];
     visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, size_t d) {
@@ -208,7 +208,7 @@ class Builder {
     });
   }
 
-  void march(const EdgeIds& lower, const EdgeIds& upper, std::vector<Face>& out) const {
+  void march(const EdgeIds& lower, const EdgeIds& upper, Vector<Face>& out) const {
     const size_t nx = lattice_.columns();
     for (size_t y = 0; y + 1 < lattice_.rows(); ++y) {
       for (size_t x = 0; x + 1 < nx; ++x) {
@@ -234,7 +234,7 @@ class Builder {
   // The one or two faces in a tetrahedron, away from its corners that are inside.
   template <typename Between>
   static void cut(const uint32_t (&corner)[4], uint32_t inside, const Between& between,
-                  std::vector<Face>& out) {
+                  Vector<Face>& out) {
     uint32_t mask = 0;
     for (uint32_t k = 0; k < 4; ++k) mask |= (inside >> corner[k] & 1) << k;
     if (mask == 0 || mask == 15) return;
@@ -258,9 +258,9 @@ class Builder {
   Lattice lattice_;
   const Executor& executor_;
   size_t layers_;
-  std::vector<size_t> first_id_;  // per slice
-  std::vector<float> xyz_;
-  std::vector<std::vector<Face>> faces_;
+  Vector<size_t> first_id_;  // per slice
+  Vector<float> xyz_;
+  Vector<Vector<Face>> faces_;
 };
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 #include "engine/conform.h"
 #include "engine/constants.h"
@@ -12,6 +11,7 @@
 #include "engine/mesh_append.h"
 #include "engine/missed_places.h"
 #include "kernels/image_value.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -66,7 +66,7 @@ class Cutout {
     if (!in_image({0, row, plane})) return;
     const int32_t begin = std::max(first_[0], 0);
     const int32_t end = std::min(first_[0] + width, image_.dims[0]);
-    std::vector<float> own(static_cast<size_t>(image_.dims[0]));
+    Vector<float> own(static_cast<size_t>(image_.dims[0]));
     image_row(image_, row, plane, own.data());
     const auto to = [&](int32_t x) -> float& { return values[x - first_[0]]; };
     for (int32_t x = begin; x < end; ++x) to(x) = outside(depth(own[static_cast<size_t>(x)]));
@@ -83,12 +83,12 @@ class Cutout {
 };
 
 double volume_of(const Mesh& mesh, const Executor& executor) {
-  std::vector<float> xyz;
+  Vector<float> xyz;
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     const Vec3 p = mesh.at(v);
     xyz.insert(xyz.end(), {p.x, p.y, p.z});
   }
-  const std::vector<uint32_t> faces = mesh.faces();
+  const Vector<uint32_t> faces = mesh.faces();
   return surface_measures(xyz.data(), mesh.slots(), faces.data(), faces.size() / 3, executor)
       .volume;
 }

@@ -11,6 +11,7 @@
 #include "engine/iso_surface.h"
 #include "engine/mesh_import.h"
 #include "kernels/image_value.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -31,7 +32,7 @@ struct VoxelBox {
 // Grows the box by the voxels of slice z on the object's side of iso.
 void add_slice(const LevelImage& level, int64_t z, VoxelBox& box) {
   const ImageView image = level_image(image_of(level));
-  std::vector<float> row(static_cast<size_t>(image.dims[0]));
+  Vector<float> row(static_cast<size_t>(image.dims[0]));
   const auto is_object = [&](float v) {
     return level.inside_above ? v >= level.iso : v <= level.iso;
   };
@@ -53,8 +54,7 @@ void add_slice(const LevelImage& level, int64_t z, VoxelBox& box) {
 // is empty.
 bool object_extent(const LevelImage& level, const Executor& executor, Extent& box) {
   const PyramidLevel& image = image_of(level);
-  std::vector<VoxelBox> slices(static_cast<size_t>(image.dims[2]),
-                               VoxelBox{image.dims, {-1, -1, -1}});
+  Vector<VoxelBox> slices(static_cast<size_t>(image.dims[2]), VoxelBox{image.dims, {-1, -1, -1}});
   executor.run(slices.size(),
                [&](size_t z) { add_slice(level, static_cast<int64_t>(z), slices[z]); });
   std::array<int64_t, 3> low = image.dims;
@@ -122,7 +122,7 @@ Status make_seeds(const StartSpec& spec, const LevelImage& level, double delta,
                   const Executor& executor, Mesh& mesh) {
   const auto unit = static_cast<float>(delta);
   mesh.delta = delta;
-  std::vector<Ellipsoid> made;
+  Vector<Ellipsoid> made;
   for (const Seed& seed : spec.seeds) {
     const Ellipsoid e = ellipsoid_of(seed, level.space);
     if (std::min({e.radii.x, e.radii.y, e.radii.z}) < kSmallestBubble * unit) {
@@ -148,7 +148,7 @@ Status make_seeds(const StartSpec& spec, const LevelImage& level, double delta,
 
 Status make_mesh(const StartSpec& spec, const LevelImage& level, const Executor& executor,
                  Mesh& mesh) {
-  std::vector<double> xyz(spec.xyz.size());
+  Vector<double> xyz(spec.xyz.size());
   for (size_t i = 0; i < xyz.size(); ++i) xyz[i] = spec.xyz[i] * level.space.step[i % 3];
   return import_mesh(xyz.data(), static_cast<int64_t>(xyz.size() / 3), spec.abc.data(),
                      static_cast<int64_t>(spec.abc.size() / 3), executor, mesh);

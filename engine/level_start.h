@@ -33,8 +33,8 @@ struct StartSpec {
   std::array<int, 3> bubbles{1, 1, 1};
   std::vector<Seed> seeds;
   Pyramid mask;               // kMask: a pyramid like the image's, the object near 1
-  std::vector<double> xyz;    // kMesh: three voxel indices of the unpadded I_0 per vertex
-  std::vector<uint32_t> abc;  // ... three vertices per face, counter-clockwise seen from outside
+  Vector<double> xyz;    // kMesh: three voxel indices of the unpadded I_0 per vertex
+  Vector<uint32_t> abc;  // ... three vertices per face, counter-clockwise seen from outside
 };
 
 // What the start needs to know of its level.

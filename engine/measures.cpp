@@ -5,6 +5,7 @@
 #include "engine/blocks.h"
 #include "engine/double3.h"
 #include "pyramid/buffer.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 namespace {
@@ -19,9 +20,9 @@ struct FaceMeasures {
 }  // namespace
 
 template <typename Real>
-std::vector<ComponentMeasures> component_measures(const Real* xyz, const uint32_t* abc,
-                                                  const MeshTopology& topology,
-                                                  const Executor& executor) {
+Vector<ComponentMeasures> component_measures(const Real* xyz, const uint32_t* abc,
+                                             const MeshTopology& topology,
+                                             const Executor& executor) {
   const size_t face_count = topology.component.size();
   const auto corner = [&](size_t c) { return xyz + 3 * static_cast<size_t>(abc[c]); };
   Buffer<FaceMeasures> faces;
@@ -34,7 +35,7 @@ std::vector<ComponentMeasures> component_measures(const Real* xyz, const uint32_
       faces[f] = {length(normal), dot(normal, difference(a, corner(3 * first)))};
     }
   });
-  std::vector<ComponentMeasures> measures;
+  Vector<ComponentMeasures> measures;
   measures.reserve(topology.components.size());
   for (const ComponentTopology& t : topology.components) {
     const auto index = static_cast<uint32_t>(measures.size());
@@ -57,16 +58,16 @@ std::vector<ComponentMeasures> component_measures(const Real* xyz, const uint32_
 }
 
 template <typename Real>
-std::vector<ComponentMeasures> component_measures(const Real* xyz, size_t vertex_count,
-                                                  const uint32_t* abc, size_t face_count,
-                                                  const Executor& executor) {
+Vector<ComponentMeasures> component_measures(const Real* xyz, size_t vertex_count,
+                                             const uint32_t* abc, size_t face_count,
+                                             const Executor& executor) {
   const EdgeTable edges(abc, face_count, vertex_count, executor);
   return component_measures(xyz, abc, mesh_topology(abc, face_count, vertex_count, edges),
                             executor);
 }
 
 plc_measures total_measures(size_t vertex_count, const MeshTopology& topology,
-                            const std::vector<ComponentMeasures>& components) {
+                            const Vector<ComponentMeasures>& components) {
   plc_measures m{};
   m.struct_size = sizeof(plc_measures);
   m.vertices = static_cast<int64_t>(vertex_count);
@@ -89,12 +90,12 @@ plc_measures surface_measures(const Real* xyz, size_t vertex_count, const uint32
   return total_measures(vertex_count, topology, component_measures(xyz, abc, topology, executor));
 }
 
-#define PLC_INSTANTIATE(Real)                                                                      \
-  template std::vector<ComponentMeasures> component_measures(                                      \
-      const Real*, const uint32_t*, const MeshTopology&, const Executor&);                         \
-  template std::vector<ComponentMeasures> component_measures(const Real*, size_t, const uint32_t*, \
-                                                             size_t, const Executor&);             \
-  template plc_measures surface_measures(const Real*, size_t, const uint32_t*, size_t,             \
+#define PLC_INSTANTIATE(Real)                                                                  \
+  template Vector<ComponentMeasures> component_measures(const Real*, const uint32_t*,          \
+                                                        const MeshTopology&, const Executor&); \
+  template Vector<ComponentMeasures> component_measures(const Real*, size_t, const uint32_t*,  \
+                                                        size_t, const Executor&);              \
+  template plc_measures surface_measures(const Real*, size_t, const uint32_t*, size_t,         \
                                          const Executor&);
 PLC_INSTANTIATE(float)
 PLC_INSTANTIATE(double)

@@ -2,11 +2,11 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "engine/mesh_topology.h"
 #include "engine/pellicle.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -28,18 +28,18 @@ struct ComponentMeasures {
 //
 // All components, the largest area first, ties by number.
 template <typename Real>
-std::vector<ComponentMeasures> component_measures(const Real* xyz, const uint32_t* abc,
-                                                  const MeshTopology& topology,
-                                                  const Executor& executor);
+Vector<ComponentMeasures> component_measures(const Real* xyz, const uint32_t* abc,
+                                             const MeshTopology& topology,
+                                             const Executor& executor);
 template <typename Real>
-std::vector<ComponentMeasures> component_measures(const Real* xyz, size_t vertex_count,
-                                                  const uint32_t* abc, size_t face_count,
-                                                  const Executor& executor);
+Vector<ComponentMeasures> component_measures(const Real* xyz, size_t vertex_count,
+                                             const uint32_t* abc, size_t face_count,
+                                             const Executor& executor);
 
 // Of the whole: sums over the components in their order; genus -1 where one has none. vertices
 // counts isolated ones too, euler does not. An empty mesh has zeros everywhere.
 plc_measures total_measures(size_t vertex_count, const MeshTopology& topology,
-                            const std::vector<ComponentMeasures>& components);
+                            const Vector<ComponentMeasures>& components);
 template <typename Real>
 plc_measures surface_measures(const Real* xyz, size_t vertex_count, const uint32_t* abc,
                               size_t face_count, const Executor& executor);

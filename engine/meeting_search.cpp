@@ -8,6 +8,7 @@
 #include "engine/blocks.h"
 #include "engine/triangle_intersection.h"
 #include "engine/vertex_star.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 namespace {
@@ -255,9 +256,9 @@ void MeetingSearch::search_leaf(const Mesh& mesh, uint32_t leaf, Pairs& pairs) c
   }
 }
 
-const std::vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t slots,
-                                                 const Packed* positions, const uint8_t* marked,
-                                                 const Executor& executor) {
+const Vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t slots,
+                                            const Packed* positions, const uint8_t* marked,
+                                            const Executor& executor) {
   const Mesh mesh{rings, slots, positions, marked};
   pairs_.clear();
   faces_.clear();

@@ -2,13 +2,13 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "engine/box_lanes.h"
 #include "engine/self_intersection.h"
 #include "kernels/ring.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -35,8 +35,8 @@ class MeetingSearch {
   // faces of zero area left out) and both have a marked vertex - one of them, where they share a
   // vertex -, sorted, until the next call. The same for any executor. The mesh is closed and a
   // manifold.
-  const std::vector<FacePair>& find(const RingView& rings, uint32_t slots, const Packed* positions,
-                                    const uint8_t* marked, const Executor& executor);
+  const Vector<FacePair>& find(const RingView& rings, uint32_t slots, const Packed* positions,
+                               const uint8_t* marked, const Executor& executor);
 
   // The faces of the last call; none where nothing was marked.
   size_t face_count() const { return faces_.size() / 3; }
@@ -59,7 +59,7 @@ class MeetingSearch {
       return marked(abc[0]) || marked(abc[1]) || marked(abc[2]);
     }
   };
-  using Pairs = std::vector<FacePair>;
+  using Pairs = Vector<FacePair>;
 
   static Box3 all_lanes(const BoxLanes& boxes);
 
@@ -78,9 +78,9 @@ class MeetingSearch {
   Buffer<uint32_t> faces_;
   Buffer<uint32_t> begin_;  // per listed vertex, and one more
   Buffer<uint32_t> block_faces_;
-  std::vector<Level> levels_;
+  Vector<Level> levels_;
   size_t level_count_ = 0;
-  std::vector<Pairs> found_;
+  Vector<Pairs> found_;
   Pairs pairs_;
 };
 

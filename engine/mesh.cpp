@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/blocks.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -18,7 +19,7 @@ uint32_t tail_class(uint32_t length) {
 }
 
 template <typename T>
-void permute(Buffer<T>& buffer, const std::vector<uint32_t>& order) {
+void permute(Buffer<T>& buffer, const Vector<uint32_t>& order) {
   Buffer<T> moved(buffer.size());
   for (size_t i = 0; i < order.size(); ++i) moved[i] = buffer[order[i]];
   buffer.swap(moved);
@@ -202,7 +203,7 @@ void Mesh::free_tail(uint32_t offset, uint32_t length) {
   free_tails_[tail_class(length)].push_back(offset);
 }
 
-void Mesh::renumber(const std::vector<uint32_t>& order, const Executor& executor) {
+void Mesh::renumber(const Vector<uint32_t>& order, const Executor& executor) {
   Mesh to;
   to.delta = delta;
   to.grow(static_cast<uint32_t>(order.size()));
@@ -238,10 +239,9 @@ void Mesh::renumber(const std::vector<uint32_t>& order, const Executor& executor
 }
 
 // `to` is new and has a slot for each vertex of `order`.
-void Mesh::carry_rings(const std::vector<uint32_t>& order, Mesh& to,
-                       const Executor& executor) const {
+void Mesh::carry_rings(const Vector<uint32_t>& order, Mesh& to, const Executor& executor) const {
   constexpr size_t kBlock = 4096;
-  std::vector<uint32_t> new_id(slots_);
+  Vector<uint32_t> new_id(slots_);
   run_blocks(executor, order.size(), kBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) new_id[order[i]] = static_cast<uint32_t>(i);
   });
@@ -265,8 +265,8 @@ void Mesh::carry_rings(const std::vector<uint32_t>& order, Mesh& to,
   }
 }
 
-std::vector<uint32_t> Mesh::faces() const {
-  std::vector<uint32_t> out;
+Vector<uint32_t> Mesh::faces() const {
+  Vector<uint32_t> out;
   out.reserve(static_cast<size_t>(alive_) * 6);
   for (uint32_t v = 0; v < slots_; ++v) {
     const uint32_t d = valence(v);

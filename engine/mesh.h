@@ -2,13 +2,13 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "engine/neighbors.h"
 #include "engine/vec3.h"
 #include "kernels/ring.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -104,12 +104,12 @@ class Mesh {
   // No id was created or freed since then.
   bool in_order() const { return created_ == 0 && alive_ == slots_; }
   // Of deleted vertices; create() takes the last one.
-  const std::vector<uint32_t>& free_ids() const { return free_; }
+  const Vector<uint32_t>& free_ids() const { return free_; }
   // New ids: new id = rank of v in `order`, which lists every living vertex once. Nothing but the
   // ids changes.
-  void renumber(const std::vector<uint32_t>& order, const Executor& executor = SerialExecutor());
+  void renumber(const Vector<uint32_t>& order, const Executor& executor = SerialExecutor());
   // Triples (v, r[i], r[i+1]) with v the smallest id, in order of v, then of the ring.
-  std::vector<uint32_t> faces() const;
+  Vector<uint32_t> faces() const;
   uint64_t bytes() const;
   Mesh copy() const;
 
@@ -124,7 +124,7 @@ class Mesh {
   static void visit_streams(Self& mesh, const Visit& visit);
   bool restore_rings(StateReader& from);
   void grow(uint32_t slots);
-  void carry_rings(const std::vector<uint32_t>& order, Mesh& to, const Executor& executor) const;
+  void carry_rings(const Vector<uint32_t>& order, Mesh& to, const Executor& executor) const;
   void set_valence(uint32_t v, uint32_t valence);
   uint32_t& column(uint32_t v, uint32_t k) {
     return columns_[(v / kRingLanes * kRingColumns + k) * kRingLanes + v % kRingLanes];
@@ -139,8 +139,8 @@ class Mesh {
   Buffer<uint32_t> columns_;
   Buffer<uint16_t> valence_;
   Buffer<uint32_t> tail_;
-  std::array<std::vector<uint32_t>, 16> free_tails_;  // by size class
-  std::vector<uint32_t> free_;
+  std::array<Vector<uint32_t>, 16> free_tails_;  // by size class
+  Vector<uint32_t> free_;
   RingView view_;
 };
 

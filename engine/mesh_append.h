@@ -1,8 +1,8 @@
 // One mesh added to another.
 #pragma once
-#include <vector>
 
 #include "engine/mesh.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -10,7 +10,7 @@ namespace plc {
 // inside out. Ids follow in the order of part's. What meets is the caller's care.
 template <typename Place>
 void append_mesh(Mesh& mesh, const Mesh& part, bool inward, const Place& place) {
-  std::vector<uint32_t> id(part.slots());
+  Vector<uint32_t> id(part.slots());
   for (uint32_t v = 0; v < part.slots(); ++v) {
     if (part.alive(v)) id[v] = mesh.create(place(part.at(v)), {});
   }

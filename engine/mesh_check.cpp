@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <vector>
 
 #include "engine/blocks.h"
 #include "engine/face_tree.h"
@@ -14,6 +13,7 @@
 #include "engine/nesting.h"
 #include "engine/self_intersection.h"
 #include "engine/triangle_intersection.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 namespace {
@@ -33,7 +33,7 @@ void measure_edges(const double* xyz, size_t vertex_count, const EdgeTable& edge
   struct Part {
     double low = std::numeric_limits<double>::infinity(), high = 0, sum = 0;
   };
-  std::vector<Part> parts(block_count(vertex_count, kBlock));
+  Vector<Part> parts(block_count(vertex_count, kBlock));
   run_blocks(executor, vertex_count, kBlock, [&](size_t block, size_t begin, size_t end) {
     Part part;
     edges.visit(begin, end, [&](uint32_t a, uint32_t b, const EdgeUse*, const EdgeUse*) {
@@ -77,7 +77,7 @@ void measure_angles(const double* xyz, const uint32_t* abc, size_t face_count,
     double low = std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
   };
-  std::vector<Part> parts(block_count(face_count, kBlock));
+  Vector<Part> parts(block_count(face_count, kBlock));
   run_blocks(executor, face_count, kBlock, [&](size_t block, size_t begin, size_t end) {
     Part part;
     for (size_t f = begin; f < end; ++f) {
@@ -106,7 +106,7 @@ int64_t count_duplicates(const double* xyz, size_t vertex_count) {
   constexpr uint32_t kEmpty = std::numeric_limits<uint32_t>::max();
   size_t capacity = 16;
   while (capacity < 2 * vertex_count) capacity *= 2;
-  std::vector<uint32_t> table(capacity, kEmpty);
+  Vector<uint32_t> table(capacity, kEmpty);
   int64_t duplicates = 0;
   for (size_t v = 0; v < vertex_count; ++v) {
     const double* p = xyz + 3 * v;
@@ -149,7 +149,7 @@ void note_topology(const MeshTopology& t, plc_check& check) {
 
 void find_intersections(const double* xyz, const uint32_t* abc, const FaceTree& tree,
                         const Executor& executor, plc_check& check) {
-  const std::vector<FacePair> pairs =
+  const Vector<FacePair> pairs =
       self_intersections(xyz, abc, tree, executor, static_cast<size_t>(kMaxIntersections));
   check.self_intersections = static_cast<int64_t>(pairs.size());
   check.first_intersection[0] = pairs.empty() ? -1 : static_cast<int64_t>(pairs[0].first);
@@ -176,7 +176,7 @@ Status check_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, 
   measure_angles(xyz, abc, faces, executor, c);
   c.duplicate_points = count_duplicates(xyz, vertices);
 
-  const std::vector<uint32_t> proper = proper_faces(xyz, abc, faces, executor);
+  const Vector<uint32_t> proper = proper_faces(xyz, abc, faces, executor);
   c.degenerate_faces = face_count - static_cast<int64_t>(proper.size());
   FaceTree tree;
   tree.build(xyz, abc, proper.data(), proper.size(), executor);

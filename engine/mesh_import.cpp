@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "engine/face_rings.h"
 #include "engine/face_tree.h"
@@ -15,6 +14,7 @@
 #include "engine/mesh_topology.h"
 #include "engine/nesting.h"
 #include "engine/self_intersection.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -121,7 +121,7 @@ class Complaint {
   }
 
   std::string flat(int64_t count) const {
-    const std::vector<uint32_t> proper = proper_faces(xyz_, abc_, face_count_, executor_);
+    const Vector<uint32_t> proper = proper_faces(xyz_, abc_, face_count_, executor_);
     size_t f = 0;
     while (f < proper.size() && proper[f] == f) ++f;
     return "degenerate: " + std::to_string(count) + " faces of zero area, the first " + face(f);
@@ -140,7 +140,7 @@ class Complaint {
     const EdgeTable edges(abc_, face_count_, vertex_count_, executor_);
     const MeshTopology topology = mesh_topology(abc_, face_count_, vertex_count_, edges);
     const auto measures = component_measures(xyz_, abc_, topology, executor_);
-    std::vector<uint32_t> proper = proper_faces(xyz_, abc_, face_count_, executor_);
+    Vector<uint32_t> proper = proper_faces(xyz_, abc_, face_count_, executor_);
     FaceTree tree;
     tree.build(xyz_, abc_, proper.data(), proper.size(), executor_);
     const auto sides = component_sides(xyz_, abc_, topology, measures, tree, executor_);
@@ -185,7 +185,7 @@ Status check_valences(int64_t vertex_count, const uint32_t* abc, int64_t face_co
   if (face_count < 0 || face_count > kMaxFaces || abc == nullptr) return {};
   const auto vertices = static_cast<size_t>(vertex_count);
   const auto corners = 3 * static_cast<size_t>(face_count);
-  std::vector<uint32_t> faces(vertices, 0);
+  Vector<uint32_t> faces(vertices, 0);
   for (size_t c = 0; c < corners; ++c) {
     if (abc[c] < faces.size()) ++faces[abc[c]];
   }
@@ -227,8 +227,8 @@ Status import_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc,
   const FaceRings rings(abc, static_cast<size_t>(face_count), vertices, executor);
   if (Status s = check_range(xyz, vertices, rings); !s.ok()) return s;
   // Rounding moves vertices a little: near sheets may meet then, and thin faces turn over.
-  std::vector<float> rounded(3 * vertices);
-  std::vector<double> back(3 * vertices);
+  Vector<float> rounded(3 * vertices);
+  Vector<double> back(3 * vertices);
   for (size_t v = 0; v < vertices; ++v) {
     if (rings.faces(v) == 0) continue;
     for (size_t i = 3 * v; i < 3 * v + 3; ++i) {

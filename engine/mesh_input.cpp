@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <cstdio>
 #include <string>
-#include <vector>
 
 #include "engine/blocks.h"
 #include "engine/mesh_topology.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 namespace {
@@ -17,7 +17,7 @@ constexpr size_t kBlock = 8192;
 // The smallest i in [0, count) that is bad, or count.
 template <typename Bad>
 size_t find_first(const Executor& executor, size_t count, const Bad& bad) {
-  std::vector<size_t> first(block_count(count, kBlock), count);
+  Vector<size_t> first(block_count(count, kBlock), count);
   run_blocks(executor, count, kBlock, [&](size_t block, size_t begin, size_t end) {
     for (size_t i = begin; i < end && first[block] == count; ++i) {
       if (bad(i)) first[block] = i;

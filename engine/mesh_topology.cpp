@@ -6,6 +6,7 @@
 
 #include "engine/blocks.h"
 #include "engine/vertex_corners.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 namespace {
@@ -27,7 +28,7 @@ class Sets {
   }
 
  private:
-  std::vector<uint32_t> parent_;
+  Vector<uint32_t> parent_;
 };
 
 // Joins the corners of the two faces of an edge at each of its ends.
@@ -55,7 +56,7 @@ void number_components(size_t face_count, Sets& faces, MeshTopology& m) {
 void count_vertices(const uint32_t* abc, size_t face_count, size_t vertex_count, Sets& corners,
                     MeshTopology& m) {
   constexpr uint8_t kUsed = 1, kSeen = 2, kSeveral = 4;
-  std::vector<uint8_t> state(vertex_count, 0);
+  Vector<uint8_t> state(vertex_count, 0);
   for (size_t f = 0; f < face_count; ++f) {
     const bool repeated = has_repeated_vertex(abc + 3 * f);
     ComponentTopology& component = m.components[m.component[f]];
@@ -77,7 +78,7 @@ void count_vertices(const uint32_t* abc, size_t face_count, size_t vertex_count,
   }
 }
 
-void count_valences(const std::vector<uint32_t>& valence, MeshTopology& m) {
+void count_valences(const Vector<uint32_t>& valence, MeshTopology& m) {
   uint32_t low = std::numeric_limits<uint32_t>::max(), high = 0;
   for (const uint32_t v : valence) {
     if (v != 0) low = std::min(low, v);
@@ -125,7 +126,7 @@ MeshTopology mesh_topology(const uint32_t* abc, size_t face_count, size_t vertex
                            const EdgeTable& edges) {
   MeshTopology m;
   Sets faces(face_count), corners(3 * face_count);
-  std::vector<uint32_t> valence(vertex_count, 0);
+  Vector<uint32_t> valence(vertex_count, 0);
   edges.visit(0, vertex_count,
               [&](uint32_t low, uint32_t high, const EdgeUse* use, const EdgeUse* end) {
                 ++valence[low];

@@ -2,10 +2,10 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -65,8 +65,8 @@ struct MeshTopology {
   int32_t valence_min = 0;            // edges at a vertex that has any
   int32_t valence_max = 0;
   int64_t euler = 0;  // V - E + F, without isolated vertices and faces with a repeated vertex
-  std::vector<uint32_t> component;  // of each face, numbered by their first faces
-  std::vector<ComponentTopology> components;
+  Vector<uint32_t> component;  // of each face, numbered by their first faces
+  Vector<ComponentTopology> components;
 };
 
 // Three indices per face, each below vertex_count; at most kMaxFaces faces.

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstring>
 #include <utility>
-#include <vector>
 
 #include "engine/voxel_sides.h"
 #include "kernels/image_value.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -24,8 +24,8 @@ class Disagreement {
   void add(int32_t z, Sets& missed) const {
     constexpr size_t kWord = sizeof(uint64_t);
     const auto width = static_cast<size_t>(image_.dims[0]);
-    std::vector<float> values(width);
-    std::vector<uint8_t> inside(width), differ((width + kWord - 1) / kWord * kWord, 0);
+    Vector<float> values(width);
+    Vector<uint8_t> inside(width), differ((width + kWord - 1) / kWord * kWord, 0);
     for (int32_t y = 0; y < image_.dims[1]; ++y) {
       sides_.row(y, z, inside.data());
       image_row(image_, y, z, values.data());
@@ -193,7 +193,7 @@ class Search {
     return std::sqrt(squared);
   }
 
-  bool free(const Voxel& at, const VoxelSet& kind, const std::vector<Voxel>& ball) const {
+  bool free(const Voxel& at, const VoxelSet& kind, const Vector<Voxel>& ball) const {
     return std::all_of(ball.begin(), ball.end(), [&](const Voxel& o) {
       const Voxel v{at[0] + o[0], at[1] + o[1], at[2] + o[2]};
       return within(v) && kind.has(v);
@@ -203,8 +203,8 @@ class Search {
   const ImageView& image_;
   Sets& missed_;
   std::array<float, 3> length_{};  // of a voxel, mesh units
-  std::vector<Voxel> around_, between_;
-  std::vector<Voxel> front_, next_;
+  Vector<Voxel> around_, between_;
+  Vector<Voxel> front_, next_;
 };
 
 }  // namespace

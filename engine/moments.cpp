@@ -9,6 +9,7 @@
 #include "engine/measures.h"
 #include "engine/mesh_topology.h"
 #include "engine/symmetric_eigen.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 namespace {
@@ -86,11 +87,11 @@ void set_shape(const Moments& m, const double* reference, plc_component_measures
 }
 
 // Per component of the topology.
-std::vector<Moments> component_moments(const double* xyz, const uint32_t* abc,
-                                       const MeshTopology& topology, const Executor& executor) {
-  std::vector<Moments> sums(topology.components.size());
+Vector<Moments> component_moments(const double* xyz, const uint32_t* abc,
+                                  const MeshTopology& topology, const Executor& executor) {
+  Vector<Moments> sums(topology.components.size());
   const size_t face_count = topology.component.size();
-  std::vector<Moments> parts(std::min(kChunk, face_count));
+  Vector<Moments> parts(std::min(kChunk, face_count));
   const auto corner = [&](size_t c) { return xyz + 3 * static_cast<size_t>(abc[c]); };
   for (size_t chunk = 0; chunk < face_count; chunk += kChunk) {
     const size_t count = std::min(kChunk, face_count - chunk);
@@ -108,7 +109,7 @@ std::vector<Moments> component_moments(const double* xyz, const uint32_t* abc,
 }
 
 void set_boxes(const double* xyz, const uint32_t* abc, const MeshTopology& topology,
-               std::vector<plc_component_measures>& by_number) {
+               Vector<plc_component_measures>& by_number) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (plc_component_measures& c : by_number) {
     std::fill(std::begin(c.low), std::end(c.low), kInfinity);
@@ -125,8 +126,8 @@ void set_boxes(const double* xyz, const uint32_t* abc, const MeshTopology& topol
 }
 
 // Sums over the components in their order, from a corner of the first.
-void set_whole(const double* xyz, const uint32_t* abc, const std::vector<Moments>& moments,
-               const std::vector<ComponentMeasures>& order, ShapeMeasures& shape) {
+void set_whole(const double* xyz, const uint32_t* abc, const Vector<Moments>& moments,
+               const Vector<ComponentMeasures>& order, ShapeMeasures& shape) {
   plc_component_measures& whole = shape.whole;
   if (order.empty()) {
     set_undefined(whole);
@@ -159,9 +160,9 @@ ShapeMeasures shape_measures(const double* xyz, size_t vertex_count, const uint3
                              size_t face_count, const Executor& executor) {
   const EdgeTable edges(abc, face_count, vertex_count, executor);
   const MeshTopology topology = mesh_topology(abc, face_count, vertex_count, edges);
-  const std::vector<ComponentMeasures> order = component_measures(xyz, abc, topology, executor);
-  const std::vector<Moments> moments = component_moments(xyz, abc, topology, executor);
-  std::vector<plc_component_measures> by_number(topology.components.size());
+  const Vector<ComponentMeasures> order = component_measures(xyz, abc, topology, executor);
+  const Vector<Moments> moments = component_moments(xyz, abc, topology, executor);
+  Vector<plc_component_measures> by_number(topology.components.size());
   set_boxes(xyz, abc, topology, by_number);
   ShapeMeasures shape{};
   for (const ComponentMeasures& m : order) {

@@ -7,16 +7,16 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "engine/pellicle.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
 struct ShapeMeasures {
   plc_component_measures whole;
-  std::vector<plc_component_measures> components;  // the largest area first, ties by first_face
+  Vector<plc_component_measures> components;  // the largest area first, ties by first_face
 };
 
 // xyz: three finite values per vertex; abc: three indices below vertex_count per face; at most

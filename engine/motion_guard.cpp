@@ -3,10 +3,11 @@
 #include "engine/blocks.h"
 #include "engine/constants.h"
 #include "kernels/ring_forces.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
-void MotionGuard::find_folds(const std::vector<uint32_t>& blocks) {
+void MotionGuard::find_folds(const Vector<uint32_t>& blocks) {
   folds_.resize_uninitialized(mesh_.padded());
   const Streams3& n = mesh_.normal;
   run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {
@@ -22,13 +23,13 @@ void MotionGuard::find_folds(const std::vector<uint32_t>& blocks) {
   });
 }
 
-void MotionGuard::assess(const std::vector<uint32_t>& due, const std::vector<uint32_t>& at_risk) {
+void MotionGuard::assess(const Vector<uint32_t>& due, const Vector<uint32_t>& at_risk) {
   for (const uint32_t v : due) mesh_.risk[v] &= Mesh::kFoldRisk;
   for (const uint32_t v : at_risk) mesh_.risk[v] |= Mesh::kNearRisk;
 }
 
 int64_t MotionGuard::take_back(const Buffer<Packed>& before, SpatialHash& hash,
-                               std::vector<uint32_t>& back) {
+                               Vector<uint32_t>& back) {
   int64_t taken_back = 0;
   for (int64_t now = 1; now != 0; taken_back += now) {
     now = 0;
@@ -44,7 +45,7 @@ int64_t MotionGuard::take_back(const Buffer<Packed>& before, SpatialHash& hash,
 
 // Returns how many of the face's vertices were not where they had been.
 int64_t MotionGuard::put_back(const uint32_t* face, const Buffer<Packed>& before, SpatialHash& hash,
-                              std::vector<uint32_t>& back) {
+                              Vector<uint32_t>& back) {
   int64_t count = 0;
   for (int i = 0; i < 3; ++i) {
     const uint32_t v = face[i];

@@ -1,13 +1,13 @@
 // Going past the paper: a movement that would make the surface meet itself is taken back.
 #pragma once
 #include <cstdint>
-#include <vector>
 
 #include "engine/meeting_search.h"
 #include "engine/mesh.h"
 #include "engine/spatial_hash.h"
 #include "kernels/simd.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -22,17 +22,17 @@ class MotionGuard {
 
   // blocks: of kRingLanes vertices, with all that have moved and all their neighbours. Finds where
   // the surface folds now, against the normals of the movement's start.
-  void find_folds(const std::vector<uint32_t>& blocks);
+  void find_folds(const Vector<uint32_t>& blocks);
   // due: the vertices whose risk has been looked at anew; at_risk: those of all that it was found
   // for (Surroundings). The others keep theirs.
-  void assess(const std::vector<uint32_t>& due, const std::vector<uint32_t>& at_risk);
+  void assess(const Vector<uint32_t>& due, const Vector<uint32_t>& at_risk);
   // `before`: the positions before the movement, by id. The hash learns of the vertices that go
   // back, which are appended to `back`. Returns how many went back.
-  int64_t take_back(const Buffer<Packed>& before, SpatialHash& hash, std::vector<uint32_t>& back);
+  int64_t take_back(const Buffer<Packed>& before, SpatialHash& hash, Vector<uint32_t>& back);
 
  private:
   int64_t put_back(const uint32_t* face, const Buffer<Packed>& before, SpatialHash& hash,
-                   std::vector<uint32_t>& back);
+                   Vector<uint32_t>& back);
 
   Mesh& mesh_;
   const Executor& executor_;

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <vector>
+
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -56,7 +57,7 @@ class Neighbors {
   static constexpr uint32_t kInline = 32;
   uint32_t size_ = 0;
   std::array<uint32_t, kInline> inline_;
-  std::vector<uint32_t> heap_;
+  Vector<uint32_t> heap_;
 };
 
 }  // namespace plc

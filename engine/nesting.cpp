@@ -6,6 +6,7 @@
 #include "engine/blocks.h"
 #include "engine/predicates.h"
 #include "engine/triangle_intersection.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 namespace {
@@ -75,9 +76,9 @@ class Search {
 };
 
 // The centre of each component's largest face (not a vertex: components may share one).
-std::vector<Point3> starts(const double* xyz, const uint32_t* abc, const MeshTopology& topology) {
-  std::vector<Point3> start(topology.components.size(), Point3{0, 0, 0});
-  std::vector<double> largest(topology.components.size(), -1);
+Vector<Point3> starts(const double* xyz, const uint32_t* abc, const MeshTopology& topology) {
+  Vector<Point3> start(topology.components.size(), Point3{0, 0, 0});
+  Vector<double> largest(topology.components.size(), -1);
   for (size_t f = 0; f < topology.component.size(); ++f) {
     const Triangle t = make_triangle(xyz, abc + 3 * f);
     const Point3 &a = t.corner[0], &b = t.corner[1], &c = t.corner[2];
@@ -95,13 +96,13 @@ std::vector<Point3> starts(const double* xyz, const uint32_t* abc, const MeshTop
 
 }  // namespace
 
-std::vector<ComponentSide> component_sides(const double* xyz, const uint32_t* abc,
-                                           const MeshTopology& topology,
-                                           const std::vector<ComponentMeasures>& measures,
-                                           const FaceTree& tree, const Executor& executor) {
-  std::vector<ComponentSide> sides(measures.size());
+Vector<ComponentSide> component_sides(const double* xyz, const uint32_t* abc,
+                                      const MeshTopology& topology,
+                                      const Vector<ComponentMeasures>& measures,
+                                      const FaceTree& tree, const Executor& executor) {
+  Vector<ComponentSide> sides(measures.size());
   const Search search(xyz, abc, topology, tree);
-  const std::vector<Point3> start = starts(xyz, abc, topology);
+  const Vector<Point3> start = starts(xyz, abc, topology);
   run_blocks(executor, measures.size(), kComponentBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const uint32_t own = measures[i].component;

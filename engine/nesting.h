@@ -1,12 +1,12 @@
 // Which components of a closed surface are walls of cavities, and which face the wrong way.
 #pragma once
 #include <cstdint>
-#include <vector>
 
 #include "engine/face_tree.h"
 #include "engine/measures.h"
 #include "engine/mesh_topology.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -20,9 +20,9 @@ struct ComponentSide {
 // the component's largest face with all other components, by exact predicates. A ray that touches
 // no vertex or edge decides alone; should all three fail in this, the majority does. Where
 // components intersect each other depth means little: such a mesh is invalid anyway.
-std::vector<ComponentSide> component_sides(const double* xyz, const uint32_t* abc,
-                                           const MeshTopology& topology,
-                                           const std::vector<ComponentMeasures>& measures,
-                                           const FaceTree& tree, const Executor& executor);
+Vector<ComponentSide> component_sides(const double* xyz, const uint32_t* abc,
+                                      const MeshTopology& topology,
+                                      const Vector<ComponentMeasures>& measures,
+                                      const FaceTree& tree, const Executor& executor);
 
 }  // namespace plc

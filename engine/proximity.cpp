@@ -4,6 +4,7 @@
 
 #include "engine/constants.h"
 #include "engine/inversion.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -58,8 +59,8 @@ std::optional<Candidate> pair_candidate(const Mesh& mesh, uint32_t u, uint32_t w
 }
 
 void proximity_candidates(const Mesh& mesh, const SpatialHash& hash, uint32_t u,
-                          const std::vector<uint32_t>& pending, uint32_t stamp, uint32_t iteration,
-                          std::vector<Candidate>& candidates) {
+                          const Vector<uint32_t>& pending, uint32_t stamp, uint32_t iteration,
+                          Vector<Candidate>& candidates) {
   const auto reach = kMinApart * static_cast<float>(mesh.delta);
   const Vec3 p = mesh.at(u);
   const Neighbors ring = mesh.ring(u);

@@ -1,10 +1,10 @@
 // Constraint (3): pairs of non-neighbours that are too near, and what they ask for (3.2, 3.3).
 #pragma once
 #include <optional>
-#include <vector>
 
 #include "engine/candidate.h"
 #include "engine/spatial_hash.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -20,7 +20,7 @@ std::optional<Candidate> pair_candidate(const Mesh& mesh, uint32_t u, uint32_t w
 //   normals that agree (dot > 0.5): one sheet, nothing
 //   else: an axial transformation
 void proximity_candidates(const Mesh& mesh, const SpatialHash& hash, uint32_t u,
-                          const std::vector<uint32_t>& pending, uint32_t stamp, uint32_t iteration,
-                          std::vector<Candidate>& candidates);
+                          const Vector<uint32_t>& pending, uint32_t stamp, uint32_t iteration,
+                          Vector<Candidate>& candidates);
 
 }  // namespace plc

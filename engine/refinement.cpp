@@ -10,6 +10,7 @@
 #include "engine/edge.h"
 #include "engine/inversion.h"
 #include "engine/self_meeting.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -39,15 +40,15 @@ struct Keyed {
 };
 
 // A stable radix sort: those of equal keys keep their order.
-void sort_by_key(std::vector<Keyed>& keyed) {
+void sort_by_key(Vector<Keyed>& keyed) {
   constexpr uint32_t kDigit = 11, kDigits = 6;
   constexpr size_t kValues = size_t{1} << kDigit;
   const auto digit = [](uint64_t key, uint32_t d) { return key >> (kDigit * d) & (kValues - 1); };
-  std::vector<std::array<uint32_t, kValues>> count(kDigits);
+  Vector<std::array<uint32_t, kValues>> count(kDigits);
   for (const Keyed& k : keyed) {
     for (uint32_t d = 0; d < kDigits; ++d) ++count[d][digit(k.key, d)];
   }
-  std::vector<Keyed> sorted(keyed.size());
+  Vector<Keyed> sorted(keyed.size());
   for (uint32_t d = 0; d < kDigits; ++d) {
     if (keyed.empty() || count[d][digit(keyed[0].key, d)] == keyed.size()) continue;  // all alike
     uint32_t next = 0;
@@ -60,8 +61,8 @@ void sort_by_key(std::vector<Keyed>& keyed) {
 // Slot k of v stands for the face (v, slot k, slot k + 1). face_of[first[v] + k] is the vertex that
 // was created in it.
 struct FaceVertices {
-  std::vector<uint32_t> first;
-  std::vector<uint32_t> of_slot;
+  Vector<uint32_t> first;
+  Vector<uint32_t> of_slot;
 };
 
 // The vertex of the face (u, w, x) where w is a neighbour of u and x follows it.
@@ -106,7 +107,7 @@ FaceVertices create_face_vertices(Mesh& mesh, uint32_t old_slots) {
 // did not. Each round gives back the edges of all faces that meet; with all given back none is
 // left.
 // of_face: by id, whether a vertex was created in a face.
-void undo_where_meeting(Mesh& mesh, const std::vector<uint8_t>& of_face, const Executor& executor) {
+void undo_where_meeting(Mesh& mesh, const Vector<uint8_t>& of_face, const Executor& executor) {
   for (;;) {
     const auto meeting = meeting_faces(mesh, executor);
     bool undone = false;
@@ -125,23 +126,23 @@ void undo_where_meeting(Mesh& mesh, const std::vector<uint8_t>& of_face, const E
 
 }  // namespace
 
-std::vector<uint32_t> morton_order(const Mesh& mesh, const Executor& executor) {
+Vector<uint32_t> morton_order(const Mesh& mesh, const Executor& executor) {
   constexpr size_t kBlock = 4096;
-  const std::vector<uint32_t> living = living_order(mesh);
-  std::vector<Keyed> keyed(living.size());
+  const Vector<uint32_t> living = living_order(mesh);
+  Vector<Keyed> keyed(living.size());
   run_blocks(executor, living.size(), kBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       keyed[i] = {morton_key(mesh.at(living[i]), mesh.delta), living[i]};
     }
   });
   sort_by_key(keyed);
-  std::vector<uint32_t> order(living.size());
+  Vector<uint32_t> order(living.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = keyed[i].id;
   return order;
 }
 
-std::vector<uint32_t> living_order(const Mesh& mesh) {
-  std::vector<uint32_t> order;
+Vector<uint32_t> living_order(const Mesh& mesh) {
+  Vector<uint32_t> order;
   order.reserve(mesh.vertex_count());
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     if (mesh.alive(v)) order.push_back(v);
@@ -182,7 +183,7 @@ void refine(Mesh& mesh, const Executor& executor, bool renumbering) {
   mesh.delta /= kRefinement;
   // Searches for faces that meet are fast where ids follow space.
   const auto order = renumbering ? morton_order(mesh, executor) : living_order(mesh);
-  std::vector<uint8_t> of_face(order.size());
+  Vector<uint8_t> of_face(order.size());
   for (size_t i = 0; i < order.size(); ++i) of_face[i] = order[i] >= old_slots ? 1 : 0;
   mesh.renumber(order, executor);
   undo_where_meeting(mesh, of_face, executor);

@@ -2,6 +2,7 @@
 #pragma once
 #include "engine/mesh.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -13,8 +14,8 @@ namespace plc {
 void refine(Mesh& mesh, const Executor& executor, bool renumbering = true);
 
 // The living vertices along a Morton curve of cells of delta, ties by id.
-std::vector<uint32_t> morton_order(const Mesh& mesh, const Executor& executor = SerialExecutor());
+Vector<uint32_t> morton_order(const Mesh& mesh, const Executor& executor = SerialExecutor());
 // ... in the order of their ids.
-std::vector<uint32_t> living_order(const Mesh& mesh);
+Vector<uint32_t> living_order(const Mesh& mesh);
 
 }  // namespace plc

@@ -14,6 +14,7 @@
 #include "engine/inversion.h"
 #include "engine/proximity.h"
 #include "kernels/ring_forces.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -28,17 +29,16 @@ constexpr size_t kFewTrials = 16;      // not worth tasks
 
 // Runs collect(entry of the queue, out) over chunks and joins the results in order.
 template <typename Collect>
-std::vector<Candidate> collect_in_order(const Executor& executor,
-                                        const std::vector<uint32_t>& queue, size_t chunk_size,
-                                        Collect&& collect) {
-  std::vector<Candidate> all;
+Vector<Candidate> collect_in_order(const Executor& executor, const Vector<uint32_t>& queue,
+                                   size_t chunk_size, Collect&& collect) {
+  Vector<Candidate> all;
   if (queue.size() <= kSerialChunks * chunk_size) {
     for (const uint32_t v : queue) collect(v, all);
     std::sort(all.begin(), all.end());
     return all;
   }
   const size_t chunks = block_count(queue.size(), chunk_size);
-  std::vector<std::vector<Candidate>> found(chunks);
+  std::vector<Vector<Candidate>> found(chunks);
   executor.run(chunks, [&](size_t chunk) {
     const size_t end = std::min((chunk + 1) * chunk_size, queue.size());
     for (size_t i = chunk * chunk_size; i < end; ++i) collect(queue[i], found[chunk]);
@@ -96,7 +96,7 @@ void Resolution::run(uint32_t iteration, OperationCounts& counts) {
   counts.tetrahedron += tiny_.update(mesh_, changed_);
 }
 
-const std::vector<uint32_t>& Resolution::take_due(bool check_all) {
+const Vector<uint32_t>& Resolution::take_due(bool check_all) {
   if (check_all) {
     due_.list_all();
   } else {
@@ -105,12 +105,12 @@ const std::vector<uint32_t>& Resolution::take_due(bool check_all) {
   return look_around(check_all);
 }
 
-const std::vector<uint32_t>& Resolution::take_due(const std::vector<uint32_t>& awake) {
+const Vector<uint32_t>& Resolution::take_due(const Vector<uint32_t>& awake) {
   due_.list_due(awake);
   return look_around(false);
 }
 
-const std::vector<uint32_t>& Resolution::take_all() {
+const Vector<uint32_t>& Resolution::take_all() {
   due_.list_all();
   start_check(true);
   // Every vertex has just been entered where it is.
@@ -121,7 +121,7 @@ const std::vector<uint32_t>& Resolution::take_all() {
 }
 
 // all: whether every vertex is due.
-const std::vector<uint32_t>& Resolution::look_around(bool all) {
+const Vector<uint32_t>& Resolution::look_around(bool all) {
   start_check(all);
   surroundings_.search(due_.list(), hash_);
   return due_.list();
@@ -145,7 +145,7 @@ void Resolution::update_hash(bool all) {
   hash_.insert(mesh_, due_.list(), executor_);
 }
 
-void Resolution::add_due(const std::vector<uint32_t>& vertices) {
+void Resolution::add_due(const Vector<uint32_t>& vertices) {
   pair_queue_.insert(pair_queue_.end(), vertices.begin(), vertices.end());
 }
 
@@ -178,14 +178,14 @@ void Resolution::queue_violated_edges() {
   }
 }
 
-uint32_t Resolution::stamp_queue(const std::vector<uint32_t>& queue) {
+uint32_t Resolution::stamp_queue(const Vector<uint32_t>& queue) {
   ++stamps_;
   for (const uint32_t v : queue) stamp_[v] = stamps_;
   return stamps_;
 }
 
 // Ascending, each living vertex once.
-void Resolution::unique(std::vector<uint32_t>& queue) {
+void Resolution::unique(Vector<uint32_t>& queue) {
   stamp_.resize(mesh_.slots(), 0);
   if (queue.size() < mesh_.slots() / kSortedQueue) {
     std::sort(queue.begin(), queue.end());
@@ -204,15 +204,15 @@ void Resolution::resolve_edges(OperationCounts& counts) {
   for (int round = 0; round < kMaxRounds; ++round) {
     unique(edge_queue_);
     if (edge_queue_.empty()) return;
-    const std::vector<Candidate> candidates = edge_candidates(edge_queue_);
+    const Vector<Candidate> candidates = edge_candidates(edge_queue_);
     edge_queue_.clear();
     apply_round(candidates, edge_queue_, counts);
   }
 }
 
-std::vector<Candidate> Resolution::edge_candidates(const std::vector<uint32_t>& queue) {
+Vector<Candidate> Resolution::edge_candidates(const Vector<uint32_t>& queue) {
   const uint32_t stamp = stamp_queue(queue);
-  return collect_in_order(executor_, queue, kChunk, [&](uint32_t u, std::vector<Candidate>& out) {
+  return collect_in_order(executor_, queue, kChunk, [&](uint32_t u, Vector<Candidate>& out) {
     const uint32_t d = mesh_.valence(u);
     for (uint32_t k = 0; k < d; ++k) {
       const uint32_t v = mesh_.neighbor(u, k);
@@ -233,19 +233,19 @@ std::vector<Candidate> Resolution::edge_candidates(const std::vector<uint32_t>& 
 // found; all look again around what has changed since.
 bool Resolution::resolve_pairs(bool first, OperationCounts& counts) {
   unique(pair_queue_);
-  const std::vector<Candidate> candidates = pair_candidates(pair_queue_, first);
+  const Vector<Candidate> candidates = pair_candidates(pair_queue_, first);
   pair_queue_.clear();
   if (candidates.empty()) return false;
-  std::vector<uint32_t> later;
+  Vector<uint32_t> later;
   apply_round(candidates, later, counts);
   pair_queue_.insert(pair_queue_.end(), later.begin(), later.end());
   return true;
 }
 
-std::vector<Candidate> Resolution::pair_candidates(const std::vector<uint32_t>& queue, bool first) {
+Vector<Candidate> Resolution::pair_candidates(const Vector<uint32_t>& queue, bool first) {
   const uint32_t stamp = stamp_queue(queue);
   auto all =
-      collect_in_order(executor_, queue, kPairChunk, [&](uint32_t u, std::vector<Candidate>& out) {
+      collect_in_order(executor_, queue, kPairChunk, [&](uint32_t u, Vector<Candidate>& out) {
         proximity_candidates(mesh_, hash_, u, stamp_, stamp, iteration_, out);
       });
   if (first) {
@@ -268,7 +268,7 @@ std::vector<Candidate> Resolution::pair_candidates(const std::vector<uint32_t>& 
   return all;
 }
 
-void Resolution::apply_round(const std::vector<Candidate>& candidates, std::vector<uint32_t>& later,
+void Resolution::apply_round(const Vector<Candidate>& candidates, Vector<uint32_t>& later,
                              OperationCounts& counts) {
   round_ = ++stamps_;
   for (size_t begin = 0; begin < candidates.size(); begin += kTrialRun) {
@@ -299,8 +299,8 @@ void Resolution::try_candidates(const Candidate* candidates, size_t count, size_
   trials_.run(tried_);
 }
 
-void Resolution::apply_in_turn(const Candidate& candidate, size_t trial,
-                               std::vector<uint32_t>& later, OperationCounts& counts) {
+void Resolution::apply_in_turn(const Candidate& candidate, size_t trial, Vector<uint32_t>& later,
+                               OperationCounts& counts) {
   if (!free_footprint(candidate, round_)) {
     later.push_back(candidate.edge.u);
     later.push_back(candidate.edge.v);

@@ -5,6 +5,7 @@
 #include "engine/blocks.h"
 #include "engine/predicates.h"
 #include "engine/triangle_intersection.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 namespace {
@@ -17,9 +18,9 @@ constexpr size_t kWave = 32;
 
 }  // namespace
 
-std::vector<uint32_t> proper_faces(const double* xyz, const uint32_t* abc, size_t face_count,
-                                   const Executor& executor) {
-  std::vector<std::vector<uint32_t>> kept(block_count(face_count, kFaceBlock));
+Vector<uint32_t> proper_faces(const double* xyz, const uint32_t* abc, size_t face_count,
+                              const Executor& executor) {
+  std::vector<Vector<uint32_t>> kept(block_count(face_count, kFaceBlock));
   run_blocks(executor, face_count, kFaceBlock, [&](size_t block, size_t begin, size_t end) {
     for (size_t f = begin; f < end; ++f) {
       const Triangle t = make_triangle(xyz, abc + 3 * f);
@@ -28,24 +29,23 @@ std::vector<uint32_t> proper_faces(const double* xyz, const uint32_t* abc, size_
       }
     }
   });
-  std::vector<uint32_t> faces;
+  Vector<uint32_t> faces;
   faces.reserve(face_count);
-  for (const std::vector<uint32_t>& part : kept) {
+  for (const Vector<uint32_t>& part : kept) {
     faces.insert(faces.end(), part.begin(), part.end());
   }
   return faces;
 }
 
-std::vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc,
-                                         const FaceTree& tree, const Executor& executor,
-                                         size_t limit) {
+Vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc, const FaceTree& tree,
+                                    const Executor& executor, size_t limit) {
   const size_t tasks = block_count(tree.leaf_count(), kLeafBlock);
   const size_t wave = limit == std::numeric_limits<size_t>::max() ? tasks : kWave;
-  std::vector<FacePair> all;
-  std::vector<std::vector<FacePair>> found(wave);
+  Vector<FacePair> all;
+  std::vector<Vector<FacePair>> found(wave);
   for (size_t first = 0; first < tasks && all.size() < limit; first += wave) {
     executor.run(std::min(wave, tasks - first), [&](size_t task) {
-      std::vector<FacePair>& pairs = found[task];
+      Vector<FacePair>& pairs = found[task];
       pairs.clear();
       const size_t begin = (first + task) * kLeafBlock;
       const size_t end = std::min(begin + kLeafBlock, tree.leaf_count());
@@ -69,9 +69,9 @@ std::vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc,
   return all;
 }
 
-std::vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc, size_t face_count,
-                                         const Executor& executor, size_t limit) {
-  const std::vector<uint32_t> faces = proper_faces(xyz, abc, face_count, executor);
+Vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc, size_t face_count,
+                                    const Executor& executor, size_t limit) {
+  const Vector<uint32_t> faces = proper_faces(xyz, abc, face_count, executor);
   FaceTree tree;
   tree.build(xyz, abc, faces.data(), faces.size(), executor);
   return self_intersections(xyz, abc, tree, executor, limit);

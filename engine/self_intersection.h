@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "engine/face_tree.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -23,17 +23,17 @@ using FacePair = std::pair<uint32_t, uint32_t>;
 // Memory is O(face_count + pairs); time is proportional to the pairs of faces whose boxes overlap,
 // whatever the sizes of faces - all pairs only where all faces share one place (a fan of n
 // needles).
-std::vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc, size_t face_count,
-                                         const Executor& executor,
-                                         size_t limit = std::numeric_limits<size_t>::max());
+Vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc, size_t face_count,
+                                    const Executor& executor,
+                                    size_t limit = std::numeric_limits<size_t>::max());
 
 // The same on a tree of all faces that are not of zero area.
-std::vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc,
-                                         const FaceTree& tree, const Executor& executor,
-                                         size_t limit = std::numeric_limits<size_t>::max());
+Vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc, const FaceTree& tree,
+                                    const Executor& executor,
+                                    size_t limit = std::numeric_limits<size_t>::max());
 
 // The faces that are not of exactly zero area, in order.
-std::vector<uint32_t> proper_faces(const double* xyz, const uint32_t* abc, size_t face_count,
-                                   const Executor& executor);
+Vector<uint32_t> proper_faces(const double* xyz, const uint32_t* abc, size_t face_count,
+                              const Executor& executor);
 
 }  // namespace plc

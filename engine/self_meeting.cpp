@@ -3,12 +3,13 @@
 #include <algorithm>
 
 #include "engine/meeting_search.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
-std::vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Executor& executor) {
+Vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Executor& executor) {
   MeetingSearch search;
-  std::vector<uint32_t> faces;
+  Vector<uint32_t> faces;
   for (const auto& [f, g] :
        search.find(mesh.rings(), mesh.slots(), mesh.packed.data(), nullptr, executor)) {
     faces.push_back(f);
@@ -16,7 +17,7 @@ std::vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Execu
   }
   std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-  std::vector<std::array<uint32_t, 3>> corners;
+  Vector<std::array<uint32_t, 3>> corners;
   for (const uint32_t f : faces) {
     const uint32_t* abc = search.face(f);
     corners.push_back({abc[0], abc[1], abc[2]});

@@ -2,14 +2,14 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "engine/mesh.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
 // Every face of a pair that meets, once or more, in a fixed order; empty for an embedded surface.
-std::vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Executor& executor);
+Vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Executor& executor);
 
 }  // namespace plc

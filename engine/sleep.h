@@ -14,6 +14,7 @@
 #include "engine/mesh.h"
 #include "engine/state_io.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -28,10 +29,10 @@ class Sleep {
   void choose(bool all);
   // Ascending block indices: vertices kRingLanes * block .. Those that have fallen asleep just now
   // in the second list.
-  const std::vector<uint32_t>& awake() const { return awake_; }
-  const std::vector<uint32_t>& fallen() const { return fallen_; }
+  const Vector<uint32_t>& awake() const { return awake_; }
+  const Vector<uint32_t>& fallen() const { return fallen_; }
   // The awake ones and those that sleep but have a neighbour of an awake vertex.
-  const std::vector<uint32_t>& awake_and_rim() const { return awake_and_rim_; }
+  const Vector<uint32_t>& awake_and_rim() const { return awake_and_rim_; }
   // Whether some blocks were left out by the last choose().
   bool any_asleep() const { return any_asleep_; }
   // After the step: who was calm, and who wakes its neighbours. Normals and displacements are those
@@ -51,9 +52,9 @@ class Sleep {
   const Executor& executor_;
   float calm_speed_;
   bool any_asleep_ = false;
-  std::vector<uint32_t> awake_, fallen_, awake_and_rim_;
-  std::vector<uint8_t> asleep_, touched_;     // by block
-  std::vector<std::vector<uint32_t>> found_;  // per task
+  Vector<uint32_t> awake_, fallen_, awake_and_rim_;
+  Vector<uint8_t> asleep_, touched_;     // by block
+  std::vector<Vector<uint32_t>> found_;  // per task
 };
 
 }  // namespace plc

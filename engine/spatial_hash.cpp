@@ -6,6 +6,7 @@
 
 #include "engine/blocks.h"
 #include "engine/constants.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -89,8 +90,7 @@ void SpatialHash::insert(uint32_t v, Vec3 p) {
   if (!has_entry(b, v)) enter(v, b);
 }
 
-void SpatialHash::insert(const Mesh& mesh, const std::vector<uint32_t>& ids,
-                         const Executor& executor) {
+void SpatialHash::insert(const Mesh& mesh, const Vector<uint32_t>& ids, const Executor& executor) {
   constexpr size_t kTask = 512;
   const size_t tasks = block_count(ids.size(), kTask);
   missing_.resize(std::max(missing_.size(), tasks));

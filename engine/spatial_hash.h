@@ -8,6 +8,7 @@
 #include "engine/mesh.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -33,7 +34,7 @@ class SpatialHash {
   // it in any case, nothing.
   void insert(uint32_t v, Vec3 p);
   // Several of them. No vertex is listed twice.
-  void insert(const Mesh& mesh, const std::vector<uint32_t>& ids, const Executor& executor);
+  void insert(const Mesh& mesh, const Vector<uint32_t>& ids, const Executor& executor);
   // Entries that insert() has made since build().
   size_t inserted() const { return late_.size(); }
 
@@ -91,7 +92,7 @@ class SpatialHash {
   };
   Buffer<Placed> placed_;
   Buffer<uint32_t> part_start_;
-  std::vector<std::vector<uint32_t>> missing_;  // per task: those that insert() has to enter
+  std::vector<Vector<uint32_t>> missing_;  // per task: those that insert() has to enter
 };
 
 template <typename Visit>

@@ -1,4 +1,5 @@
 #include "engine/strip.h"
+#include "pyramid/memory.h"
 
 #include <algorithm>
 #include <limits>
@@ -15,7 +16,7 @@ namespace {
 // and, perhaps, from there along j; `turned` has grown i again since and alone may reach j = e.
 class StripSearch {
  public:
-  StripSearch(const std::vector<Vec3>& p, const std::vector<Vec3>& q)
+  StripSearch(const Vector<Vec3>& p, const Vector<Vec3>& q)
       : d_(static_cast<uint32_t>(p.size())), e_(static_cast<uint32_t>(q.size())) {
     rung_.resize(static_cast<size_t>(d_) * e_);
     for (uint32_t i = 0; i < d_; ++i) {
@@ -43,8 +44,8 @@ class StripSearch {
   }
 
   // The rungs of the strip that solve(start) found.
-  std::vector<Rung> trace(uint32_t start) const {
-    std::vector<Rung> rungs;
+  Vector<Rung> trace(uint32_t start) const {
+    Vector<Rung> rungs;
     uint32_t i = d_ - 1;
     uint32_t j = e_;
     for (bool turned = true; turned;) {
@@ -85,13 +86,13 @@ class StripSearch {
   }
 
   uint32_t d_, e_;
-  std::vector<float> rung_;
-  std::vector<float> turning_, turned_;
+  Vector<float> rung_;
+  Vector<float> turning_, turned_;
 };
 
 }  // namespace
 
-std::vector<Rung> shortest_strip(const std::vector<Vec3>& p, const std::vector<Vec3>& q) {
+Vector<Rung> shortest_strip(const Vector<Vec3>& p, const Vector<Vec3>& q) {
   if (p.empty() || q.empty()) return {};
   StripSearch search(p, q);
   uint32_t best_start = 0;

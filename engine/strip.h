@@ -1,9 +1,9 @@
 // The strip of triangles that joins two closed polygons (figure 4b).
 #pragma once
 #include <cstdint>
-#include <vector>
 
 #include "engine/vec3.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -16,6 +16,6 @@ struct Rung {
 // walked backwards, over all starts; p.size() + q.size() rungs, each a different edge. From one
 // rung to the next either i grows by one or j falls by one, cyclically; the last leads to the
 // first. Both polygons have at least 3 corners.
-std::vector<Rung> shortest_strip(const std::vector<Vec3>& p, const std::vector<Vec3>& q);
+Vector<Rung> shortest_strip(const Vector<Vec3>& p, const Vector<Vec3>& q);
 
 }  // namespace plc

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <vector>
 
 #include "engine/blocks.h"
 #include "engine/double3.h"
 #include "engine/face_tree.h"
 #include "engine/point_triangle.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 namespace {
@@ -21,7 +21,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 class NearestFace {
  public:
   NearestFace(const MeshArrays& mesh, const Executor& executor) : mesh_(mesh) {
-    std::vector<uint32_t> ids(mesh.face_count);
+    Vector<uint32_t> ids(mesh.face_count);
     std::iota(ids.begin(), ids.end(), 0U);
     tree_.build(mesh.xyz, mesh.abc, ids.data(), ids.size(), executor);
   }
@@ -76,7 +76,7 @@ Sums face_sums(const NearestFace& other, const double* const (&p)[3], const doub
 
 Sums surface_sums(const MeshArrays& mesh, const NearestFace& other, const double* at_vertices,
                   const Executor& executor) {
-  std::vector<Sums> parts(block_count(mesh.face_count, kBlock));
+  Vector<Sums> parts(block_count(mesh.face_count, kBlock));
   run_blocks(executor, mesh.face_count, kBlock, [&](size_t block, size_t begin, size_t end) {
     for (size_t f = begin; f < end; ++f) {
       const double* p[3];
@@ -99,7 +99,7 @@ Sums surface_sums(const MeshArrays& mesh, const NearestFace& other, const double
 plc_distances surface_distances(const MeshArrays& mesh, const MeshArrays& other,
                                 const Executor& executor, double* distance) {
   const NearestFace nearest(other, executor);
-  std::vector<double> own;
+  Vector<double> own;
   if (distance == nullptr) {
     own.resize(mesh.vertex_count);
     distance = own.data();

@@ -7,6 +7,7 @@
 #include "engine/constants.h"
 #include "engine/risk.h"
 #include "kernels/nearby.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -21,16 +22,15 @@ constexpr float kNone = -2;
 
 }  // namespace
 
-void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& hash) {
+void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash) {
   search(due, hash, Wanted::kNearAndRisk);
 }
 
-void Surroundings::search_near(const std::vector<uint32_t>& all, const SpatialHash& hash) {
+void Surroundings::search_near(const Vector<uint32_t>& all, const SpatialHash& hash) {
   search(all, hash, Wanted::kNear);
 }
 
-void Surroundings::search(const std::vector<uint32_t>& due, const SpatialHash& hash,
-                          Wanted wanted) {
+void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted) {
   const float reach =
       (wanted == Wanted::kNear ? kMinApart : kRiskReach) * static_cast<float>(mesh_.delta);
   const Vec3 span{reach, reach, reach};

@@ -2,12 +2,12 @@
 // vertices have moved, for the motion guard.
 #pragma once
 #include <cstdint>
-#include <vector>
 
 #include "engine/mesh.h"
 #include "engine/spatial_hash.h"
 #include "kernels/simd.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -29,32 +29,32 @@ class Surroundings {
       : mesh_(mesh), executor_(executor), simd_(simd) {}
 
   // due: ascending. The hash holds every living vertex. Normals are those of mesh.normal.
-  void search(const std::vector<uint32_t>& due, const SpatialHash& hash);
+  void search(const Vector<uint32_t>& due, const SpatialHash& hash);
   // Only what is too near, for constraint (3), around all living vertices: a smaller box, no
   // normals, and each pair is seen from one side.
-  void search_near(const std::vector<uint32_t>& all, const SpatialHash& hash);
+  void search_near(const Vector<uint32_t>& all, const SpatialHash& hash);
 
   // Of the last search: the non-neighbours u < w, one of them due, that are nearer than (3) allows;
   // sorted.
-  const std::vector<VertexPair>& too_near() const { return too_near_; }
+  const Vector<VertexPair>& too_near() const { return too_near_; }
   // Of the last search: the vertices at risk (risk.h), one of each two at least due; some twice.
   // None after search_near().
-  const std::vector<uint32_t>& at_risk() const { return at_risk_; }
+  const Vector<uint32_t>& at_risk() const { return at_risk_; }
 
  private:
   // What one task has found.
   struct Task {
-    std::vector<VertexPair> too_near;
-    std::vector<uint32_t> at_risk;
+    Vector<VertexPair> too_near;
+    Vector<uint32_t> at_risk;
   };
   // What it works with.
   struct Scratch {
     SpatialHash::Collected around;  // the group
-    std::vector<float> streams[6];  // their places and normals
-    std::vector<uint32_t> hits;
+    Vector<float> streams[6];       // their places and normals
+    Vector<uint32_t> hits;
   };
   enum class Wanted { kNear, kNearAndRisk };
-  void search(const std::vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted);
+  void search(const Vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted);
   void fetch(Wanted wanted, Scratch& scratch) const;
   void search_group(const uint32_t* due, size_t count, Wanted wanted, Scratch& scratch,
                     Task& task) const;
@@ -65,9 +65,9 @@ class Surroundings {
   const Mesh& mesh_;
   const Executor& executor_;
   SimdTarget simd_;
-  std::vector<Task> tasks_;
-  std::vector<VertexPair> too_near_;
-  std::vector<uint32_t> at_risk_;
+  Vector<Task> tasks_;
+  Vector<VertexPair> too_near_;
+  Vector<uint32_t> at_risk_;
 };
 
 }  // namespace plc

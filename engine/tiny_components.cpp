@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "engine/constants.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
 namespace {
 
 // Signed volume, relative to one of its vertices.
-double signed_volume(const Mesh& mesh, const std::vector<uint32_t>& component) {
+double signed_volume(const Mesh& mesh, const Vector<uint32_t>& component) {
   const Vec3 origin = mesh.at(component[0]);
   double six_volume = 0;
   for (const uint32_t v : component) {
@@ -42,7 +43,7 @@ void delete_tetrahedron(Mesh& mesh, uint32_t v) {
   mesh.destroy(v);
 }
 
-const std::vector<uint32_t>& TinyComponents::flood(const Mesh& mesh, uint32_t v) {
+const Vector<uint32_t>& TinyComponents::flood(const Mesh& mesh, uint32_t v) {
   component_.assign(1, v);
   seen_[v] = ++flood_;
   bool whole = true;
@@ -83,10 +84,10 @@ void TinyComponents::start(Mesh& mesh) {
   }
 }
 
-int64_t TinyComponents::update(Mesh& mesh, const std::vector<uint32_t>& changed) {
+int64_t TinyComponents::update(Mesh& mesh, const Vector<uint32_t>& changed) {
   seen_.resize(mesh.slots(), 0);
   first_flood_ = flood_ + 1;
-  std::vector<Watched> still;
+  Vector<Watched> still;
   int64_t deleted = 0;
   const double least = kTinyVolume * mesh.delta * mesh.delta * mesh.delta;
   const auto look = [&](uint32_t v, const Watched* known) {

@@ -1,9 +1,9 @@
 // Deletion of tetrahedra and of tiny components that turn inside out (3.3).
 #pragma once
-#include <vector>
 
 #include "engine/mesh.h"
 #include "engine/state_io.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -19,7 +19,7 @@ class TinyComponents {
   void start(Mesh& mesh);
   // Looks at the components followed so far and at those of `changed`; deletes what has turned over
   // or nearly vanished. Returns how many were deleted.
-  int64_t update(Mesh& mesh, const std::vector<uint32_t>& changed);
+  int64_t update(Mesh& mesh, const Vector<uint32_t>& changed);
   // Forgets all: ids have changed.
   void clear() { watched_.clear(); }
   // What is followed, for a mesh of so many ids.
@@ -32,14 +32,14 @@ class TinyComponents {
     uint32_t positive;  // sign of the volume when it was first seen: 1 or 0
   };
   // The component of v, when it has at most kTinyComponent vertices; else empty.
-  const std::vector<uint32_t>& flood(const Mesh& mesh, uint32_t v);
+  const Vector<uint32_t>& flood(const Mesh& mesh, uint32_t v);
 
-  std::vector<Watched> watched_;
+  Vector<Watched> watched_;
   // Whether a flood of this update has come across v.
   bool seen(uint32_t v) const { return seen_[v] >= first_flood_; }
 
-  std::vector<uint32_t> seen_;  // by vertex: the last flood that came across it, counted from 1
-  std::vector<uint32_t> component_;
+  Vector<uint32_t> seen_;  // by vertex: the last flood that came across it, counted from 1
+  Vector<uint32_t> component_;
   uint32_t flood_ = 0;
   uint32_t first_flood_ = 1;  // of this update
 };

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/blocks.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -56,7 +57,7 @@ uint32_t Trials::first_admitted(const Candidate& c, EmbeddingGuard& guard, Box3*
   return kRefused;
 }
 
-void Trials::run(const std::vector<const Candidate*>& candidates) {
+void Trials::run(const Vector<const Candidate*>& candidates) {
   boxes_.clear();
   centres_.clear();
   first_centre_.assign(1, 0);
@@ -93,7 +94,7 @@ bool Trials::find_overlapping(const Box3& box) {
   return found;
 }
 
-void Trials::begin(const std::vector<uint32_t>& footprint) {
+void Trials::begin(const Vector<uint32_t>& footprint) {
   box_ = kNothing;
   for (const uint32_t v : footprint) include(box_, mesh_.at(v));
 }

@@ -3,12 +3,12 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "engine/box_lanes.h"
 #include "engine/candidate.h"
 #include "engine/embedding_guard.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -33,14 +33,14 @@ class Trials {
   static bool can_try(const Mesh& mesh, const Candidate& candidate);
 
   // A new run: trial i is of candidates[i].
-  void run(const std::vector<const Candidate*>& candidates);
+  void run(const Vector<const Candidate*>& candidates);
   // The first place that the guard admits, 0 for an inversion; or kRefused. trial: of this
   // candidate, or kUntried. No vertex of the candidate's footprint has changed since the run.
   uint32_t admitted(const Candidate& candidate, size_t trial);
 
   // What is applied after the run: first begin(), with the vertices of all faces that go; then
   // changed() of vertices around which all new faces lie; and end() when it has been applied.
-  void begin(const std::vector<uint32_t>& footprint);
+  void begin(const Vector<uint32_t>& footprint);
   void changed(uint32_t v);
   void end();
 
@@ -55,15 +55,15 @@ class Trials {
   const Mesh& mesh_;
   const SpatialHash& hash_;
   const Executor& executor_;
-  std::vector<Trial> trials_;
-  std::vector<EmbeddingGuard> guards_;  // by task
+  Vector<Trial> trials_;
+  Vector<EmbeddingGuard> guards_;  // by task
   EmbeddingGuard guard_;
   // What has been applied since the run.
-  std::vector<BoxLanes> boxes_;
-  std::vector<uint32_t> first_centre_;  // by operation, and one more
-  std::vector<uint32_t> centres_;
-  Box3 box_{};                    // of the operation at hand
-  std::vector<uint32_t> around_;  // centres of what find_overlapping() has found
+  Vector<BoxLanes> boxes_;
+  Vector<uint32_t> first_centre_;  // by operation, and one more
+  Vector<uint32_t> centres_;
+  Box3 box_{};               // of the operation at hand
+  Vector<uint32_t> around_;  // centres of what find_overlapping() has found
 };
 
 }  // namespace plc

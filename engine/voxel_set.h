@@ -5,10 +5,10 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <vector>
 
 #include "engine/state_io.h"
+#include "pyramid/buffer.h"
+#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -28,18 +28,13 @@ class VoxelSet {
         slices_(static_cast<size_t>(dims[2])),
         slice_blocks_((width_ * rows_ + kBlock - 1) / kBlock),
         blocks_(slice_blocks_ * slices_) {}
-  VoxelSet(const VoxelSet& other);
-  VoxelSet& operator=(const VoxelSet& other) = delete;
-  VoxelSet(VoxelSet&&) = default;
-  VoxelSet& operator=(VoxelSet&&) = default;
-  ~VoxelSet() = default;
 
   // Whether it is a set of some image's voxels at all.
   bool has_image() const { return !blocks_.empty(); }
 
   bool has(const Voxel& v) const {
     const Bit at = bit_of(v);
-    const uint64_t* words = blocks_[at.block].get();
+    const uint64_t* words = blocks_[at.block].data();
     return words != nullptr && (words[at.word] & at.mask) != 0;
   }
   void insert(const Voxel& v) {
@@ -48,7 +43,7 @@ class VoxelSet {
   }
   void erase(const Voxel& v) {
     const Bit at = bit_of(v);
-    uint64_t* words = blocks_[at.block].get();
+    uint64_t* words = blocks_[at.block].data();
     if (words != nullptr) words[at.word] &= ~at.mask;
   }
   // Puts it in where it was not, and the other way round.
@@ -65,7 +60,7 @@ class VoxelSet {
     size_t i = begin + static_cast<size_t>(first);
     const size_t stop = begin + static_cast<size_t>(end);
     while (i < stop) {
-      const uint64_t* words = blocks_[static_cast<size_t>(z) * slice_blocks_ + i / kBlock].get();
+      const uint64_t* words = blocks_[static_cast<size_t>(z) * slice_blocks_ + i / kBlock].data();
       const size_t next = (i / kBlock + 1) * kBlock;
       if (words == nullptr) {
         i = next;
@@ -85,7 +80,7 @@ class VoxelSet {
   template <typename Visit>
   void visit(const Visit& visit) const {
     for (size_t b = 0; b < blocks_.size(); ++b) {
-      const uint64_t* words = blocks_[b].get();
+      const uint64_t* words = blocks_[b].data();
       for (size_t w = 0; words != nullptr && w < kBlock / kWord; ++w) {
         for (uint64_t later = ~uint64_t{0}; (words[w] & later) != 0;) {
           const auto bit = static_cast<size_t>(std::countr_zero(words[w] & later));
@@ -99,9 +94,9 @@ class VoxelSet {
   // Of an image of the same size.
   void save(StateWriter& to) const {
     to.add(static_cast<uint64_t>(
-        std::count_if(blocks_.begin(), blocks_.end(), [](const auto& b) { return b != nullptr; })));
+        std::count_if(blocks_.begin(), blocks_.end(), [](const auto& b) { return !b.empty(); })));
     for (size_t b = 0; b < blocks_.size(); ++b) {
-      if (blocks_[b] == nullptr) continue;
+      if (blocks_[b].empty()) continue;
       to.add(static_cast<uint64_t>(b));
       for (size_t w = 0; w < kBlock / kWord; ++w) to.add(blocks_[b][w]);
     }
@@ -138,25 +133,13 @@ class VoxelSet {
             static_cast<int32_t>(block / slice_blocks_)};
   }
   uint64_t* block(size_t index) {
-    if (blocks_[index] == nullptr) blocks_[index] = std::make_unique<uint64_t[]>(kBlock / kWord);
-    return blocks_[index].get();
+    if (blocks_[index].empty()) blocks_[index].resize(kBlock / kWord);
+    return blocks_[index].data();
   }
 
   size_t width_ = 0, rows_ = 0, slices_ = 0;
   size_t slice_blocks_ = 0;
-  std::vector<std::unique_ptr<uint64_t[]>> blocks_;  // slice by slice
+  Vector<Buffer<uint64_t>> blocks_;  // slice by slice
 };
-
-inline VoxelSet::VoxelSet(const VoxelSet& other)
-    : width_(other.width_),
-      rows_(other.rows_),
-      slices_(other.slices_),
-      slice_blocks_(other.slice_blocks_),
-      blocks_(other.blocks_.size()) {
-  for (size_t b = 0; b < blocks_.size(); ++b) {
-    if (other.blocks_[b] == nullptr) continue;
-    std::copy_n(other.blocks_[b].get(), kBlock / kWord, block(b));
-  }
-}
 
 }  // namespace plc

@@ -1,4 +1,5 @@
 #include "engine/window.h"
+#include "pyramid/memory.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +8,6 @@
 #include <cstring>
 #include <limits>
 #include <type_traits>
-#include <vector>
 
 namespace plc {
 
@@ -103,10 +103,10 @@ class BoundaryHistogram {
 
  private:
   struct Part {
-    std::array<std::vector<uint32_t>, 2> bins;
+    std::array<Vector<uint32_t>, 2> bins;
   };
   // Sides of the voxels of a slice, a byte each.
-  using Slice = std::vector<uint8_t>;
+  using Slice = Vector<uint8_t>;
 
   double bin_width() const { return (range_.high - range_.low) / static_cast<double>(kBins); }
 
@@ -189,8 +189,8 @@ class BoundaryHistogram {
   double iso_;
   bool above_;
   size_t width_, rows_, slices_;
-  std::vector<Part> parts_;
-  std::array<std::vector<uint64_t>, 2> bins_;
+  Vector<Part> parts_;
+  std::array<Vector<uint64_t>, 2> bins_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "engine/mesh.h"
 #include "engine/state_hash.h"
+#include "pyramid/memory.h"
 
 namespace bench {
 
@@ -15,7 +16,7 @@ inline void copy_mesh(const plc::Mesh& from, plc::Mesh& to) {
   to.clear();
   to.delta = from.delta;
   to.reserve(from.vertex_count());
-  std::vector<uint32_t> rank(from.slots());
+  plc::Vector<uint32_t> rank(from.slots());
   for (uint32_t v = 0; v < from.slots(); ++v) {
     if (from.alive(v)) rank[v] = to.create(from.at(v), from.velocity.at(v));
   }

@@ -16,6 +16,7 @@
 #include "kernels/integrate.h"
 #include "kernels/ring_forces.h"
 #include "perf/bench_mesh.h"
+#include "pyramid/memory.h"
 
 namespace {
 
@@ -57,7 +58,7 @@ struct Bench {
   Buffer<Packed> laplacian, stage;
   Streams3 start_velocity;
   Buffer<Packed> start;
-  std::vector<uint32_t> list;
+  plc::Vector<uint32_t> list;
   double sum = 0;
 
   explicit Bench(double shrink = 1) : mesh(bench::evolved_mesh(image, shrink)) {

@@ -20,6 +20,7 @@
 #include "engine/refinement.h"
 #include "kernels/ring_forces.h"
 #include "perf/bench_head.h"
+#include "pyramid/memory.h"
 
 namespace {
 
@@ -223,7 +224,7 @@ void add_guard(Suite& suite, const Mesh& start) {
       plc::Dynamics dynamics;
       plc::Resolution resolution;
       plc::MotionGuard guard;
-      std::vector<uint32_t> blocks, due, back;
+      plc::Vector<uint32_t> blocks, due, back;
     };
     auto parts = std::make_shared<Parts>(b, suite.head().recovery.model);
     const auto prepare = [&b, &suite, parts] {

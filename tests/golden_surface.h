@@ -4,6 +4,7 @@
 #include "kernels/integrate.h"
 #include "kernels/nearby.h"
 #include "kernels/ring_forces.h"
+#include "pyramid/memory.h"
 #include "tests/golden_hash.h"
 
 namespace golden {
@@ -84,7 +85,7 @@ inline uint64_t metric_normals(SimdTarget simd) {
 
 inline uint64_t edge_violations(SimdTarget simd) {
   const Rings r;
-  std::vector<uint8_t> flags(r.n);
+  plc::Vector<uint8_t> flags(r.n);
   kernels::edge_violations(simd, r.view, r.position, 400, 60000, 0, r.n, flags.data());
   Fnv hash;
   hash.add_all(flags);
@@ -96,7 +97,7 @@ inline uint64_t turned_faces(SimdTarget simd) {
   Three normal(r.n);
   const auto [x, y, z] = normal.out();
   kernels::normals(SimdTarget::kScalar, r.view, r.position, r.all, x, y, z);
-  std::vector<uint8_t> flags(r.n);
+  plc::Vector<uint8_t> flags(r.n);
   kernels::turned_faces(simd, r.view, r.position, r.all, x, y, z, 0.1F, flags.data());
   Fnv hash;
   hash.add_all(flags);
@@ -198,7 +199,7 @@ inline uint64_t near_or_turned(SimdTarget simd) {
   const Three place(kPadded, 0, 4, 71), normal(kPadded, -1, 1, 74);
   const kernels::NearbyView view{place.x.data(),  place.y.data(),  place.z.data(), normal.x.data(),
                                  normal.y.data(), normal.z.data(), kCount};
-  std::vector<uint32_t> hits(kCount + plc::kRingLanes);
+  plc::Vector<uint32_t> hits(kCount + plc::kRingLanes);
   Fnv hash;
   for (uint32_t q = 0; q < kCount; ++q) {
     const kernels::NearbyQuery query{place.x[q],  place.y[q], place.z[q], normal.x[q], normal.y[q],

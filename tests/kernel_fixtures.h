@@ -12,6 +12,7 @@
 #include "kernels/separable.h"
 #include "kernels/simd.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 
 namespace fixtures {
 
@@ -81,9 +82,9 @@ class RandomRings {
   plc::RingView view() const { return {columns_.data(), valence_.data(), tail_.data()}; }
 
  private:
-  std::vector<uint32_t> columns_;
+  plc::Vector<uint32_t> columns_;
   std::vector<uint16_t> valence_;
-  std::vector<uint32_t> tail_;
+  plc::Vector<uint32_t> tail_;
 
   void lay_out() {
     for (uint32_t v = 0; v < count(); ++v) {
@@ -103,7 +104,7 @@ class RandomRings {
   }
 
  public:
-  std::vector<std::vector<uint32_t>> rings;
+  std::vector<plc::Vector<uint32_t>> rings;
   std::vector<plc::Packed> position;
 };
 

@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "pyramid/memory.h"
 #include "tests/sample_meshes.h"
 
 namespace samples {
@@ -77,7 +78,7 @@ class MarchingTetrahedra {
     std::vector<int64_t> in, out;
     for (const int64_t c : corner) (inside(c) ? in : out).push_back(c);
     if (in.empty() || out.empty()) return;
-    std::vector<uint32_t> polygon;
+    plc::Vector<uint32_t> polygon;
     if (in.size() == 2) {
       polygon = {crossing(in[0], out[0]), crossing(in[0], out[1]), crossing(in[1], out[1]),
                  crossing(in[1], out[0])};

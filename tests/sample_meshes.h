@@ -8,11 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "pyramid/memory.h"
+
 namespace samples {
 
 struct Soup {
   std::vector<double> xyz;
-  std::vector<uint32_t> abc;
+  plc::Vector<uint32_t> abc;
 
   size_t vertex_count() const { return xyz.size() / 3; }
   size_t face_count() const { return abc.size() / 3; }
@@ -71,7 +73,7 @@ inline Soup sphere(int levels) {
   Soup m = octahedron();
   for (int level = 0; level < levels; ++level) {
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles;
-    const std::vector<uint32_t> old = std::move(m.abc);
+    const plc::Vector<uint32_t> old = std::move(m.abc);
     m.abc.clear();
     const auto middle = [&](uint32_t a, uint32_t b) {
       const auto [it, fresh] = middles.try_emplace({std::min(a, b), std::max(a, b)}, 0U);

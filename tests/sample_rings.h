@@ -5,14 +5,15 @@
 #include <vector>
 
 #include "kernels/ring.h"
+#include "pyramid/memory.h"
 #include "tests/sample_meshes.h"
 
 namespace samples {
 
 struct Rings {
-  std::vector<uint32_t> columns;
+  plc::Vector<uint32_t> columns;
   std::vector<uint16_t> valence;
-  std::vector<uint32_t> tail;
+  plc::Vector<uint32_t> tail;
   std::vector<plc::Packed> positions;
 
   plc::RingView view() const { return {columns.data(), valence.data(), tail.data()}; }
@@ -35,7 +36,7 @@ inline Rings rings_of(const Soup& m) {
   for (uint32_t v = 0; v < count; ++v) {
     r.positions.push_back({static_cast<float>(m.xyz[3 * v]), static_cast<float>(m.xyz[3 * v + 1]),
                            static_cast<float>(m.xyz[3 * v + 2]), 0});
-    std::vector<uint32_t> ring;
+    plc::Vector<uint32_t> ring;
     if (!steps[v].empty()) ring.push_back(steps[v][0][0]);
     while (ring.size() < steps[v].size()) {
       for (const auto& step : steps[v]) {

@@ -12,6 +12,7 @@
 #include "engine/mesh_invariants.h"
 #include "engine/self_intersection.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 #include "tests/sample_meshes.h"
 #include "tests/sample_rings.h"
 
@@ -85,12 +86,12 @@ inline int64_t euler(const plc::Mesh& mesh) {
 }
 
 inline int64_t component_count(const plc::Mesh& mesh) {
-  std::vector<uint8_t> seen(mesh.slots(), 0);
+  plc::Vector<uint8_t> seen(mesh.slots(), 0);
   int64_t count = 0;
   for (uint32_t start = 0; start < mesh.slots(); ++start) {
     if (!mesh.alive(start) || seen[start] != 0) continue;
     ++count;
-    std::vector<uint32_t> open{start};
+    plc::Vector<uint32_t> open{start};
     seen[start] = 1;
     while (!open.empty()) {
       const uint32_t v = open.back();
@@ -109,7 +110,7 @@ using FaceIds = std::array<uint32_t, 3>;
 
 // Sorted, each from its smallest corner.
 inline std::vector<FaceIds> sorted_faces(const plc::Mesh& mesh) {
-  const std::vector<uint32_t> abc = mesh.faces();
+  const plc::Vector<uint32_t> abc = mesh.faces();
   std::vector<FaceIds> faces;
   for (size_t i = 0; i < abc.size(); i += 3) faces.push_back({abc[i], abc[i + 1], abc[i + 2]});
   std::sort(faces.begin(), faces.end());
@@ -117,7 +118,7 @@ inline std::vector<FaceIds> sorted_faces(const plc::Mesh& mesh) {
 }
 
 inline double volume(const plc::Mesh& mesh) {
-  const std::vector<uint32_t> abc = mesh.faces();
+  const plc::Vector<uint32_t> abc = mesh.faces();
   const auto coordinates = [&](uint32_t v) {
     const plc::Packed& p = mesh.packed[v];
     return std::array<double, 3>{p.x, p.y, p.z};
@@ -134,7 +135,7 @@ inline double volume(const plc::Mesh& mesh) {
 // The faces that meet, pair by pair: by the search over any mesh, not the one that the guards use.
 using Corners = std::array<uint32_t, 3>;
 inline std::vector<std::pair<Corners, Corners>> meeting_pairs(const plc::Mesh& mesh) {
-  const std::vector<uint32_t> abc = mesh.faces();
+  const plc::Vector<uint32_t> abc = mesh.faces();
   std::vector<double> xyz;
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     const plc::Vec3 p = mesh.at(v);

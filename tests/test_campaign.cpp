@@ -11,6 +11,7 @@
 #include "engine/edge_constraints.h"
 #include "engine/embedding_guard.h"
 #include "engine/mesh_check.h"
+#include "pyramid/memory.h"
 #include "tests/sample_runs.h"
 
 namespace {
@@ -82,7 +83,7 @@ std::string invalid(const Mesh& mesh) {
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     for (const float c : {mesh.packed[v].x, mesh.packed[v].y, mesh.packed[v].z}) xyz.push_back(c);
   }
-  const std::vector<uint32_t> abc = mesh.faces();
+  const plc::Vector<uint32_t> abc = mesh.faces();
   plc_check check{};
   const plc::Status status =
       plc::check_mesh(xyz.data(), mesh.slots(), abc.data(), static_cast<int64_t>(abc.size() / 3),

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "pyramid/memory.h"
 #include "tests/sample_surfaces.h"
 #include "tests/sample_volumes.h"
 
@@ -46,7 +47,7 @@ TEST_CASE("the new vertex lies between the ends and the apexes, which alone chan
   mesh.velocity.set(e.v, {0, 6, 0});
   mesh.operations[u] = 3;
   mesh.operations[e.v] = 8;
-  std::vector<uint32_t> valences;
+  plc::Vector<uint32_t> valences;
   for (uint32_t v = 0; v < mesh.slots(); ++v) valences.push_back(mesh.valence(v));
   const uint32_t w = plc::create_on_edge(mesh, e);
   CHECK(w == 66);

@@ -5,6 +5,7 @@
 #include "engine/creation.h"
 #include "engine/inversion.h"
 #include "engine/tiny_components.h"
+#include "pyramid/memory.h"
 #include "tests/sample_surfaces.h"
 #include "tests/sample_volumes.h"
 
@@ -13,7 +14,7 @@ namespace {
 using plc::Edge;
 using plc::Mesh;
 
-std::vector<uint32_t> listed(const plc::Neighbors& ring) {
+plc::Vector<uint32_t> listed(const plc::Neighbors& ring) {
   return {ring.begin(), ring.end()};
 }
 

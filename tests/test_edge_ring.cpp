@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "pyramid/memory.h"
 #include "tests/sample_shapes.h"
 
 namespace {
@@ -13,7 +14,7 @@ plc::EdgeRings rings(const Soup& m) {
   return {m.abc.data(), m.face_count(), m.vertex_count(), plc::SerialExecutor()};
 }
 
-std::vector<uint8_t> bends(const Soup& m) {
+plc::Vector<uint8_t> bends(const Soup& m) {
   const plc::VertexCorners corners(m.abc.data(), m.face_count(), m.vertex_count());
   return plc::bending_vertices(m.xyz.data(), m.abc.data(), corners, rings(m));
 }
@@ -71,10 +72,10 @@ TEST_CASE("paths bend at saddles and reflex borders, not on what is convex or fl
   for (const uint8_t b : bends(sheet)) CHECK(b == 0);  // straight borders and corners too
   Soup notch = samples::sheet(2, 0);
   notch.abc.erase(notch.abc.begin(), notch.abc.begin() + 6);
-  const std::vector<uint8_t> at_notch = bends(notch);
+  const plc::Vector<uint8_t> at_notch = bends(notch);
   for (size_t v = 0; v < 9; ++v) CHECK(at_notch[v] == (v == 4 ? 1 : 0));
   const Soup torus = samples::torus(30, 20, 2, 0.6);
-  const std::vector<uint8_t> around = bends(torus);
+  const plc::Vector<uint8_t> around = bends(torus);
   for (size_t v = 0; v < around.size(); ++v) {
     const size_t j = v % 20;  // 0 outside, 10 at the hole
     if (j < 4 || j > 16) CHECK(around[v] == 0);
@@ -87,15 +88,15 @@ TEST_CASE("paths bend where two surfaces touch, at edges of several faces and at
   Soup touching;  // two sharp tetrahedra with vertex 0 in common: less than 360 degrees together
   touching.xyz = {0, 0, 0, 1, 0, 9, 0, 1, 9, 0, 0, 10, 1, 0, -9, 0, 1, -9, 0, 0, -10};
   touching.abc = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3, 0, 4, 5, 0, 6, 4, 0, 5, 6, 4, 6, 5};
-  const std::vector<uint8_t> at = bends(touching);
+  const plc::Vector<uint8_t> at = bends(touching);
   CHECK(at[0] == 1);
   CHECK(at[1] == 0);
   Soup fins;
   fins.xyz = {0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 1, 0, -1, 0, 0};
   fins.abc = {0, 1, 2, 0, 1, 3, 1, 0, 4};
-  CHECK(bends(fins) == std::vector<uint8_t>{1, 1, 0, 0, 0});
+  CHECK(bends(fins) == plc::Vector<uint8_t>{1, 1, 0, 0, 0});
   Soup sliver;
   sliver.xyz = {0, 0, 0, 1, 0, 0, 2, 0, 0};
   sliver.abc = {0, 1, 2};
-  CHECK(bends(sliver) == std::vector<uint8_t>{1, 1, 1});
+  CHECK(bends(sliver) == plc::Vector<uint8_t>{1, 1, 1});
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/self_intersection.h"
+#include "pyramid/memory.h"
 #include "tests/sample_meshes.h"
 
 namespace {
@@ -52,7 +53,7 @@ Soup random_soup(unsigned seed, size_t faces, double spread) {
 }
 
 plc::FaceTree tree_of(const Soup& m) {
-  std::vector<uint32_t> ids(m.face_count());
+  plc::Vector<uint32_t> ids(m.face_count());
   std::iota(ids.begin(), ids.end(), 0U);
   plc::FaceTree tree;
   tree.build(m.xyz.data(), m.abc.data(), ids.data(), ids.size(), plc::SerialExecutor());
@@ -64,7 +65,7 @@ plc::FaceTree tree_of(const Soup& m) {
 TEST_CASE("the tree pairs every two faces whose boxes overlap exactly once", "[face_tree]") {
   for (const size_t faces : {1U, 7U, 8U, 9U, 64U, 65U, 500U}) {
     const Soup m = random_soup(static_cast<unsigned>(faces), faces, faces % 2 == 0 ? 2 : 0.1);
-    std::vector<plc::FacePair> want, got;
+    plc::Vector<plc::FacePair> want, got;
     for (uint32_t f = 0; f < faces; ++f) {
       for (uint32_t g = f + 1; g < faces; ++g) {
         if (overlap(bounds(m, f), bounds(m, g))) want.emplace_back(f, g);

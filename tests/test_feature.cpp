@@ -7,6 +7,7 @@
 
 #include "kernel_fixtures.h"
 #include "limited_memory.h"
+#include "pyramid/memory.h"
 
 namespace {
 
@@ -131,7 +132,7 @@ Status norm_status(const VolumeView& volume, double sigma) {
 
 TEST_CASE("a feature image takes two float images, not three", "[pyramid]") {
   const Dims dims{64, 64, 32};
-  const std::vector<uint8_t> voxels(size_t{64} * 64 * 32, 1);
+  const plc::Vector<uint8_t> voxels(size_t{64} * 64 * 32, 1);
   const VolumeView volume{VoxelType::kU8, voxels.data(), dims, {1, 1, 1}};
   const auto image = static_cast<int64_t>(voxels.size() * sizeof(float));
   for (const double sigma : {0.0, 0.3}) {
@@ -227,7 +228,7 @@ TEST_CASE("an image of one value has no contours", "[pyramid]") {
 }
 
 TEST_CASE("a deviation that no image can be convolved with is refused", "[pyramid]") {
-  const std::vector<uint8_t> voxels(8 * 6 * 4, 1);
+  const plc::Vector<uint8_t> voxels(8 * 6 * 4, 1);
   const VolumeView volume{VoxelType::kU8, voxels.data(), {8, 6, 4}, {1, 1, 2}};
   REQUIRE(norm_status(volume, 2.0).ok());  // 6 of 8, 6 of 6 and 3 of 4 voxels
   REQUIRE(norm_status(volume, 2.01).message() ==
@@ -241,7 +242,7 @@ TEST_CASE("a deviation that no image can be convolved with is refused", "[pyrami
 }
 
 TEST_CASE("the feature of a volume that cannot be an image is refused", "[pyramid]") {
-  const std::vector<uint8_t> voxels(8, 1);
+  const plc::Vector<uint8_t> voxels(8, 1);
   VolumeView volume{VoxelType::kU8, nullptr, {2, 2, 2}, {1, 1, 1}};
   REQUIRE(norm_status(volume, 0).code() == ErrorCode::kInvalidArgument);
   volume.voxels = voxels.data();

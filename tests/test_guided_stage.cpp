@@ -8,6 +8,7 @@
 #include "kernels/image_force.h"
 #include "kernels/ring_forces.h"
 #include "kernels/scalar.h"
+#include "pyramid/memory.h"
 
 namespace {
 
@@ -120,7 +121,7 @@ TEST_CASE("a guided move is the last stage and the move, and writes no rates", "
 }
 
 TEST_CASE("listed blocks move alike, and no others", "[kernels]") {
-  const std::vector<uint32_t> list = {0, 1, 5, 6, 7, 23};
+  const plc::Vector<uint32_t> list = {0, 1, 5, 6, 7, 23};
   const Blocks blocks{list.data(), list.size()};
   Stage whole;
   scalar::guided_stage(1, kNewton, whole.forces(), whole.rk4(), whole.all());

@@ -6,6 +6,7 @@
 
 #include "kernel_fixtures.h"
 #include "kernels/scalar.h"
+#include "pyramid/memory.h"
 
 namespace {
 
@@ -178,7 +179,7 @@ constexpr MoveBound kBound{1.5F, 2.5F};
 }  // namespace
 
 TEST_CASE("the move has the bits of its scalar twin, on the listed blocks only", "[kernels]") {
-  const std::vector<uint32_t> list = {1, 2, 4};
+  const plc::Vector<uint32_t> list = {1, 2, 4};
   const Blocks blocks{list.data(), list.size()};
   Mover twin(96);
   twin.run(scalar::move, kBound, blocks);

@@ -8,6 +8,7 @@
 #include "engine/mesh_check.h"
 #include "engine/schedule.h"
 #include "engine/state_hash.h"
+#include "pyramid/memory.h"
 #include "tests/sample_surfaces.h"
 #include "tests/sample_volumes.h"
 
@@ -38,7 +39,7 @@ plc_check checked(const Mesh& mesh) {
     const plc::Vec3 p = mesh.at(v);
     xyz.insert(xyz.end(), {p.x, p.y, p.z});
   }
-  const std::vector<uint32_t> abc = mesh.faces();
+  const plc::Vector<uint32_t> abc = mesh.faces();
   plc_check check{};
   REQUIRE(plc::check_mesh(xyz.data(), static_cast<int64_t>(mesh.slots()), abc.data(),
                           static_cast<int64_t>(abc.size() / 3), samples::kSerial, check)

@@ -5,6 +5,7 @@
 
 #include "engine/constants.h"
 #include "engine/state_hash.h"
+#include "pyramid/memory.h"
 #include "tests/sample_scenes.h"
 #include "tests/sample_sides.h"
 #include "tests/sample_surfaces.h"
@@ -52,7 +53,7 @@ LateBubbles start(Mesh& mesh, const Scene& scene) {
 
 // Voxels on the wrong side, of those where the image is not nearly iso.
 size_t wrong_voxels(const Mesh& mesh, const Scene& scene) {
-  const std::vector<uint8_t> inside = samples::sides_of(mesh, scene.view());
+  const plc::Vector<uint8_t> inside = samples::sides_of(mesh, scene.view());
   size_t wrong = 0;
   for (size_t i = 0; i < inside.size(); ++i) {
     if (std::abs(scene.values[i] - kIso) < 0.2F) continue;

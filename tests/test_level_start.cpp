@@ -86,7 +86,7 @@ StartSpec of(Init init) {
 // In voxels of the unpadded I_0.
 StartSpec of(const Soup& soup) {
   StartSpec spec = of(Init::kMesh);
-  spec.xyz = soup.xyz;
+  spec.xyz.assign(soup.xyz.begin(), soup.xyz.end());
   spec.abc = soup.abc;
   return spec;
 }

@@ -23,7 +23,7 @@ plc_measures measure(const Soup& m) {
                                plc::SerialExecutor());
 }
 
-std::vector<plc::ComponentMeasures> components(const Soup& m) {
+plc::Vector<plc::ComponentMeasures> components(const Soup& m) {
   return plc::component_measures(m.xyz.data(), m.vertex_count(), m.abc.data(), m.face_count(),
                                  plc::SerialExecutor());
 }

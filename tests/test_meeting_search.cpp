@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/self_intersection.h"
+#include "pyramid/memory.h"
 #include "tests/sample_rings.h"
 
 namespace {
@@ -36,11 +37,11 @@ bool share_vertex(const plc::MeetingSearch& search, const FacePair& pair) {
 
 // The pairs that a search of all faces finds, of those that both have a marked vertex, or share one
 // and have one.
-std::vector<FacePair> expected(const plc::MeetingSearch& search, const samples::Rings& r,
-                               const std::vector<uint8_t>& marked) {
+plc::Vector<FacePair> expected(const plc::MeetingSearch& search, const samples::Rings& r,
+                               const plc::Vector<uint8_t>& marked) {
   std::vector<double> xyz;
   for (const plc::Packed& p : r.positions) xyz.insert(xyz.end(), {p.x, p.y, p.z});
-  std::vector<FacePair> pairs;
+  plc::Vector<FacePair> pairs;
   const auto is_marked = [&](uint32_t f) {
     const uint32_t* abc = search.face(f);
     return marked[abc[0]] != 0 || marked[abc[1]] != 0 || marked[abc[2]] != 0;
@@ -54,9 +55,9 @@ std::vector<FacePair> expected(const plc::MeetingSearch& search, const samples::
   return pairs;
 }
 
-std::vector<uint8_t> random_vertices(uint32_t count, unsigned seed, unsigned percent) {
+plc::Vector<uint8_t> random_vertices(uint32_t count, unsigned seed, unsigned percent) {
   std::mt19937 bits(seed);
-  std::vector<uint8_t> chosen(count);
+  plc::Vector<uint8_t> chosen(count);
   for (uint8_t& c : chosen) c = bits() % 100 < percent ? 1 : 0;
   return chosen;
 }
@@ -90,7 +91,7 @@ TEST_CASE("with all vertices marked every pair of the mesh is found", "[meeting_
     const auto pairs =
         search.find(r.view(), r.slots(), r.positions.data(), nullptr, plc::SerialExecutor());
     CHECK(pairs.size() > 50);
-    CHECK(pairs == expected(search, r, std::vector<uint8_t>(r.slots(), 1)));
+    CHECK(pairs == expected(search, r, plc::Vector<uint8_t>(r.slots(), 1)));
   }
 }
 
@@ -125,7 +126,7 @@ TEST_CASE("rounded meshes with flat and coincident faces are searched exactly",
     const auto pairs =
         search.find(r.view(), r.slots(), r.positions.data(), nullptr, plc::SerialExecutor());
     CHECK(pairs.size() > 10);
-    CHECK(pairs == expected(search, r, std::vector<uint8_t>(r.slots(), 1)));
+    CHECK(pairs == expected(search, r, plc::Vector<uint8_t>(r.slots(), 1)));
   }
 }
 
@@ -139,7 +140,7 @@ TEST_CASE("the pairs are the same for any order of tasks and of ids", "[meeting_
   const auto pairs = count_by(m, plc::SerialExecutor());
   CHECK(pairs.size() > 100);
   CHECK(count_by(m, ReverseExecutor()) == pairs);
-  std::vector<uint32_t> id(m.vertex_count());
+  plc::Vector<uint32_t> id(m.vertex_count());
   for (uint32_t v = 0; v < id.size(); ++v) id[v] = v;
   std::shuffle(id.begin(), id.end(), std::mt19937(3));
   Soup mixed = m;
@@ -152,7 +153,7 @@ TEST_CASE("the pairs are the same for any order of tasks and of ids", "[meeting_
 
 TEST_CASE("where nothing is marked nothing is listed or found", "[meeting_search]") {
   const samples::Rings r = samples::rings_of(shaken(samples::sphere(2), 1, 0.5));
-  const std::vector<uint8_t> marked(r.slots(), 0);
+  const plc::Vector<uint8_t> marked(r.slots(), 0);
   plc::MeetingSearch search;
   const plc::SerialExecutor serial;
   CHECK(!search.find(r.view(), r.slots(), r.positions.data(), nullptr, serial).empty());
@@ -178,5 +179,5 @@ TEST_CASE("deleted vertices and an empty mesh are no obstacle", "[meeting_search
       search.find(r.view(), r.slots(), r.positions.data(), nullptr, plc::SerialExecutor());
   CHECK(search.face_count() == 16);
   CHECK(!pairs.empty());
-  CHECK(pairs == expected(search, r, std::vector<uint8_t>(r.slots(), 1)));
+  CHECK(pairs == expected(search, r, plc::Vector<uint8_t>(r.slots(), 1)));
 }

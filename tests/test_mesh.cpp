@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "pyramid/memory.h"
 #include "tests/sample_surfaces.h"
 #include "tests/sample_volumes.h"
 
@@ -20,17 +21,17 @@ Neighbors ring_of(std::initializer_list<uint32_t> ids) {
   return ring;
 }
 
-std::vector<uint32_t> listed(const Neighbors& ring) {
+plc::Vector<uint32_t> listed(const Neighbors& ring) {
   return {ring.begin(), ring.end()};
 }
 
-std::vector<uint32_t> ids(uint32_t first, uint32_t count) {
-  std::vector<uint32_t> all(count);
+plc::Vector<uint32_t> ids(uint32_t first, uint32_t count) {
+  plc::Vector<uint32_t> all(count);
   std::iota(all.begin(), all.end(), first);
   return all;
 }
 
-Neighbors ring_of(const std::vector<uint32_t>& all) {
+Neighbors ring_of(const plc::Vector<uint32_t>& all) {
   Neighbors ring;
   for (const uint32_t id : all) ring.push_back(id);
   return ring;
@@ -139,7 +140,7 @@ TEST_CASE("rings of any length come back as they were set", "[mesh]") {
 TEST_CASE("a ring grows and shrinks by one across every boundary of the tail arena", "[mesh]") {
   Mesh mesh;
   add_vertices(mesh, 100);
-  std::vector<uint32_t> ring = ids(1, 9);
+  plc::Vector<uint32_t> ring = ids(1, 9);
   mesh.set_ring(0, ring_of(ring));
   // 11 slots are inline; tails hold 16, 32, 64: the boundaries are 11, 27, 43.
   for (uint32_t added = 10; added < 90; ++added) {
@@ -162,7 +163,7 @@ TEST_CASE("long rings side by side do not overwrite each other", "[mesh]") {
   Mesh mesh;
   constexpr uint32_t kCount = 60;
   add_vertices(mesh, 400);
-  std::vector<std::vector<uint32_t>> expected(kCount);
+  std::vector<plc::Vector<uint32_t>> expected(kCount);
   samples::Random random(2);
   for (int step = 0; step < 3000; ++step) {
     const auto v = static_cast<uint32_t>(random.integer(0, kCount - 1));
@@ -224,16 +225,16 @@ TEST_CASE("faces are those of the rings, each once, from its smallest vertex", "
   Mesh mesh;
   const samples::Soup soup = samples::torus(8, 5, 3, 1);
   samples::fill_mesh(mesh, soup, 1);
-  const std::vector<uint32_t> faces = mesh.faces();
+  const plc::Vector<uint32_t> faces = mesh.faces();
   REQUIRE(faces.size() == soup.abc.size());
-  std::vector<std::array<uint32_t, 3>> expected;
+  plc::Vector<std::array<uint32_t, 3>> expected;
   for (size_t i = 0; i < soup.abc.size(); i += 3) {
     std::array<uint32_t, 3> f{soup.abc[i], soup.abc[i + 1], soup.abc[i + 2]};
     std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
     expected.push_back(f);
   }
   std::sort(expected.begin(), expected.end());
-  std::vector<std::array<uint32_t, 3>> found;
+  plc::Vector<std::array<uint32_t, 3>> found;
   for (size_t i = 0; i < faces.size(); i += 3) {
     CHECK(faces[i] < std::min(faces[i + 1], faces[i + 2]));
     CHECK((i == 0 || faces[i - 3] <= faces[i]));
@@ -263,13 +264,13 @@ TEST_CASE("renumbering changes nothing but the ids", "[mesh]") {
     mesh.cut_id[v] = v + 2;
     mesh.cut_iteration[v] = v + 3;
   }
-  std::vector<uint32_t> order = ids(0, count);
+  plc::Vector<uint32_t> order = ids(0, count);
   samples::Random random(3);
   for (size_t i = order.size(); i-- > 1;) {
     std::swap(order[i], order[static_cast<size_t>(random.integer(0, static_cast<int64_t>(i)))]);
   }
   std::vector<Vec3> places;
-  std::vector<std::vector<uint32_t>> rings;
+  std::vector<plc::Vector<uint32_t>> rings;
   for (uint32_t v = 0; v < count; ++v) {
     places.push_back(mesh.at(v));
     rings.push_back(listed(mesh.ring(v)));

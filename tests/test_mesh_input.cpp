@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/mesh_topology.h"
+#include "pyramid/memory.h"
 #include "tests/sample_shapes.h"
 
 namespace {
@@ -13,7 +14,7 @@ namespace {
 using Catch::Matchers::Contains;
 using plc::ErrorCode;
 
-plc::Status checked(const std::vector<double>& xyz, const std::vector<uint32_t>& abc) {
+plc::Status checked(const std::vector<double>& xyz, const plc::Vector<uint32_t>& abc) {
   return plc::check_mesh_input(xyz.data(), static_cast<int64_t>(xyz.size() / 3), abc.data(),
                                static_cast<int64_t>(abc.size() / 3), samples::ReverseExecutor());
 }

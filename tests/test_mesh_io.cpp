@@ -26,7 +26,7 @@ TriangleMesh torus() {
   const samples::Soup soup = samples::torus(13, 7, 2, 0.7);
   TriangleMesh mesh;
   for (const double x : soup.xyz) mesh.xyz.push_back(static_cast<float>(100 / 3.0 + x));
-  mesh.abc = soup.abc;
+  mesh.abc.assign(soup.abc.begin(), soup.abc.end());
   for (size_t i = 0; i < mesh.xyz.size(); ++i) {
     mesh.normals.push_back(i % 3 == 0 ? 0.6F : i % 3 == 1 ? 0.8F : 1e-9F);
   }

@@ -6,11 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "pyramid/memory.h"
 #include "tests/sample_meshes.h"
 
 namespace {
 
-plc::MeshTopology topology(const std::vector<uint32_t>& abc, size_t vertices) {
+plc::MeshTopology topology(const plc::Vector<uint32_t>& abc, size_t vertices) {
   const plc::EdgeTable edges(abc.data(), abc.size() / 3, vertices, plc::SerialExecutor());
   return plc::mesh_topology(abc.data(), abc.size() / 3, vertices, edges);
 }
@@ -20,9 +21,9 @@ plc::MeshTopology topology(const std::vector<uint32_t>& abc, size_t vertices) {
 TEST_CASE("the edge table lists every edge once with all its uses in order", "[mesh_topology]") {
   std::mt19937 bits(1);
   constexpr uint32_t kVertices = 40;
-  std::vector<uint32_t> abc(3 * 200);
+  plc::Vector<uint32_t> abc(3 * 200);
   for (uint32_t& v : abc) v = static_cast<uint32_t>(bits() % kVertices);
-  std::map<std::pair<uint32_t, uint32_t>, std::vector<uint32_t>> want;
+  std::map<std::pair<uint32_t, uint32_t>, plc::Vector<uint32_t>> want;
   for (uint32_t c = 0; c < abc.size(); ++c) {
     const uint32_t f = c / 3 * 3;
     if (abc[f] == abc[f + 1] || abc[f + 1] == abc[f + 2] || abc[f + 2] == abc[f]) continue;
@@ -35,7 +36,7 @@ TEST_CASE("the edge table lists every edge once with all its uses in order", "[m
               [&](uint32_t low, uint32_t high, const plc::EdgeUse* use, const plc::EdgeUse* end) {
                 REQUIRE(next != want.end());
                 CHECK(next->first == std::make_pair(low, high));
-                std::vector<uint32_t> corners;
+                plc::Vector<uint32_t> corners;
                 for (; use != end; ++use) corners.push_back(use->corner);
                 CHECK(corners == next->second);
                 ++next;
@@ -61,7 +62,7 @@ TEST_CASE("components are numbered by their first faces", "[mesh_topology]") {
 
 TEST_CASE("a Moebius strip is manifold, of one component, and inconsistent somewhere",
           "[mesh_topology]") {
-  std::vector<uint32_t> abc;
+  plc::Vector<uint32_t> abc;
   constexpr uint32_t kSteps = 9;
   for (uint32_t i = 0; i < kSteps; ++i) {
     const bool last = i + 1 == kSteps;
@@ -82,7 +83,7 @@ TEST_CASE(
     "a vertex where three cones meet counts once as non-manifold and three times in its "
     "components",
     "[mesh_topology]") {
-  const std::vector<uint32_t> abc = {0, 1, 2, 0, 3, 4, 0, 5, 6};
+  const plc::Vector<uint32_t> abc = {0, 1, 2, 0, 3, 4, 0, 5, 6};
   const plc::MeshTopology t = topology(abc, 8);
   CHECK(t.non_manifold_vertices == 1);
   CHECK(t.isolated_vertices == 1);

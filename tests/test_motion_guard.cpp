@@ -7,6 +7,7 @@
 #include "engine/constants.h"
 #include "engine/edge.h"
 #include "engine/surroundings.h"
+#include "pyramid/memory.h"
 #include "tests/kernel_fixtures.h"
 #include "tests/sample_surfaces.h"
 #include "tests/sample_volumes.h"
@@ -32,17 +33,17 @@ class Movement {
   int64_t guard(const plc::Executor& executor = samples::kSerial) {
     plc::MotionGuard guard(mesh_, executor, plc::best_simd_target());
     hash_.build(mesh_, plc::kMinApart * static_cast<float>(mesh_.delta), executor);
-    std::vector<uint32_t> due;
+    plc::Vector<uint32_t> due;
     for (uint32_t v = 0; v < mesh_.slots(); ++v) {
       if (mesh_.alive(v)) due.push_back(v);
     }
     plc::Surroundings around(mesh_, executor, plc::best_simd_target());
     around.search(due, hash_);
-    std::vector<uint32_t> blocks(mesh_.padded() / plc::kRingLanes);
+    plc::Vector<uint32_t> blocks(mesh_.padded() / plc::kRingLanes);
     std::iota(blocks.begin(), blocks.end(), 0U);
     guard.find_folds(blocks);
     guard.assess(due, around.at_risk());
-    std::vector<uint32_t> back;
+    plc::Vector<uint32_t> back;
     const int64_t count = guard.take_back(before_, hash_, back);
     CHECK(static_cast<int64_t>(back.size()) == count);
     for (const uint32_t v : back) CHECK(is_back(v));

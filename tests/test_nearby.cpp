@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "kernels/scalar.h"
+#include "pyramid/memory.h"
 #include "tests/kernel_fixtures.h"
 
 namespace {
@@ -32,9 +33,9 @@ struct Places {
   std::vector<float> stream[6];
 };
 
-std::vector<uint32_t> hits_of(SimdTarget simd, const Places& places,
+plc::Vector<uint32_t> hits_of(SimdTarget simd, const Places& places,
                               const kernels::NearbyQuery& query) {
-  std::vector<uint32_t> hits(places.count + plc::kRingLanes, 7);
+  plc::Vector<uint32_t> hits(places.count + plc::kRingLanes, 7);
   hits.resize(kernels::near_or_turned(simd, places.view(), query, hits.data()));
   return hits;
 }
@@ -84,9 +85,9 @@ TEST_CASE("bounds: nearer than near, up to far, agreement up to most", "[kernels
   places.stream[5] = {0.5F, 0.5F, 0.5F, 0.25F, 0.25F, 0.25F, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0};
   const kernels::NearbyQuery query{0, 0, 0, 0, 0, 1, 1, 4, 0.25F};
   for (const SimdTarget simd : plc::available_simd_targets()) {
-    CHECK(hits_of(simd, places, query) == std::vector<uint32_t>{3, 4});
+    CHECK(hits_of(simd, places, query) == plc::Vector<uint32_t>{3, 4});
     kernels::NearbyQuery wider = query;
     wider.near_squared = 1.5F;
-    CHECK(hits_of(simd, places, wider) == std::vector<uint32_t>{0, 3, 4, 6});
+    CHECK(hits_of(simd, places, wider) == plc::Vector<uint32_t>{0, 3, 4, 6});
   }
 }

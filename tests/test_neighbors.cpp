@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <utility>
 
+#include "pyramid/memory.h"
 #include "tests/sample_volumes.h"
 
 namespace {
@@ -15,7 +16,7 @@ Neighbors counted(uint32_t size) {
   return n;
 }
 
-std::vector<uint32_t> listed(const Neighbors& n) {
+plc::Vector<uint32_t> listed(const Neighbors& n) {
   return {n.begin(), n.end()};
 }
 
@@ -54,7 +55,7 @@ TEST_CASE("insertions and deletions at random agree with a vector across the inl
           "[neighbors]") {
   samples::Random random(4);
   Neighbors n;
-  std::vector<uint32_t> expected;
+  plc::Vector<uint32_t> expected;
   for (uint32_t step = 0; step < 4000; ++step) {
     const auto size = static_cast<int64_t>(expected.size());
     // Drifts between 0 and 80 and so crosses 32 often.

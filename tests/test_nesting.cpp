@@ -4,18 +4,19 @@
 #include <numeric>
 #include <vector>
 
+#include "pyramid/memory.h"
 #include "tests/sample_meshes.h"
 
 namespace {
 
 using samples::Soup;
 
-std::vector<plc::ComponentSide> sides(const Soup& m) {
+plc::Vector<plc::ComponentSide> sides(const Soup& m) {
   const plc::SerialExecutor serial;
   const plc::EdgeTable edges(m.abc.data(), m.face_count(), m.vertex_count(), serial);
   const plc::MeshTopology topology =
       plc::mesh_topology(m.abc.data(), m.face_count(), m.vertex_count(), edges);
-  std::vector<uint32_t> ids(m.face_count());
+  plc::Vector<uint32_t> ids(m.face_count());
   std::iota(ids.begin(), ids.end(), 0U);
   plc::FaceTree tree;
   tree.build(m.xyz.data(), m.abc.data(), ids.data(), ids.size(), serial);

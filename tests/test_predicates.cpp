@@ -1,4 +1,5 @@
 #include "engine/predicates.h"
+#include "pyramid/memory.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -100,7 +101,7 @@ class Integer {
     if (digits_.empty()) negative_ = false;
   }
   bool negative_ = false;
-  std::vector<uint32_t> digits_;
+  plc::Vector<uint32_t> digits_;
 };
 
 int exact2(double ax, double ay, double bx, double by, double cx, double cy, int shift = 1100) {

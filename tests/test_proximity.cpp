@@ -6,6 +6,7 @@
 
 #include "engine/constants.h"
 #include "engine/inversion.h"
+#include "pyramid/memory.h"
 #include "tests/sample_surfaces.h"
 
 namespace {
@@ -16,11 +17,11 @@ using plc::Operation;
 using samples::Soup;
 
 // What all pairs ask for, each once; every vertex pending.
-std::vector<Candidate> candidates_of(const Mesh& mesh, uint32_t iteration = 100) {
+plc::Vector<Candidate> candidates_of(const Mesh& mesh, uint32_t iteration = 100) {
   plc::SpatialHash hash;
   hash.build(mesh, plc::kMinApart * static_cast<float>(mesh.delta), samples::kSerial);
-  const std::vector<uint32_t> pending(mesh.slots(), 1);
-  std::vector<Candidate> candidates;
+  const plc::Vector<uint32_t> pending(mesh.slots(), 1);
+  plc::Vector<Candidate> candidates;
   for (uint32_t u = 0; u < mesh.slots(); ++u) {
     if (mesh.alive(u)) plc::proximity_candidates(mesh, hash, u, pending, 1, iteration, candidates);
   }
@@ -69,9 +70,9 @@ TEST_CASE("a pair is taken once, from whichever of its ends is pending", "[proxi
   plc::SpatialHash hash;
   hash.build(mesh, plc::kMinApart * static_cast<float>(kDelta), samples::kSerial);
   const auto found_from = [&](std::initializer_list<uint32_t> queue) {
-    std::vector<uint32_t> pending(mesh.slots(), 6);
+    plc::Vector<uint32_t> pending(mesh.slots(), 6);
     for (const uint32_t u : queue) pending[u] = 7;
-    std::vector<Candidate> candidates;
+    plc::Vector<Candidate> candidates;
     for (const uint32_t u : queue) {
       plc::proximity_candidates(mesh, hash, u, pending, 7, 1, candidates);
     }
@@ -171,8 +172,8 @@ TEST_CASE("deleted vertices and places they have left are no pairs", "[proximity
   samples::fill_mesh(mesh, spheres(0.25), kDelta);
   plc::SpatialHash hash;
   hash.build(mesh, plc::kMinApart * static_cast<float>(kDelta), samples::kSerial);
-  const std::vector<uint32_t> pending(mesh.slots(), 0);
-  std::vector<Candidate> candidates;
+  const plc::Vector<uint32_t> pending(mesh.slots(), 0);
+  plc::Vector<Candidate> candidates;
   mesh.place(kOther, {0, 0, 1.9F});
   plc::proximity_candidates(mesh, hash, kPole, pending, 1, 1, candidates);
   CHECK(candidates.empty());

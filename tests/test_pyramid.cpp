@@ -7,6 +7,7 @@
 
 #include "kernel_fixtures.h"
 #include "limited_memory.h"
+#include "pyramid/memory.h"
 #include "reference_pyramid.h"
 #include "sample_levels.h"
 

@@ -5,6 +5,7 @@
 
 #include "engine/constants.h"
 #include "engine/creation.h"
+#include "pyramid/memory.h"
 #include "tests/kernel_fixtures.h"
 #include "tests/sample_surfaces.h"
 #include "tests/sample_volumes.h"
@@ -64,7 +65,7 @@ TEST_CASE("two refinements divide every edge in three: old vertices have doubled
           "[refinement]") {
   Mesh mesh;
   samples::fill_mesh(mesh, samples::sphere(2), 1);
-  std::vector<uint32_t> before(64, 0), after(64, 0);
+  plc::Vector<uint32_t> before(64, 0), after(64, 0);
   for (uint32_t v = 0; v < mesh.slots(); ++v) ++before[mesh.valence(v)];
   const uint32_t old_vertices = mesh.slots();
   plc::refine(mesh, samples::kSerial);
@@ -104,7 +105,7 @@ TEST_CASE("the Morton order lists every living vertex once, neighbours in space 
   samples::fill_mesh(mesh, samples::sphere(4), 0.05);
   samples::Random random(19);
   double shuffled = 0, sorted = 0;
-  std::vector<uint32_t> order = plc::morton_order(mesh);
+  plc::Vector<uint32_t> order = plc::morton_order(mesh);
   REQUIRE(order.size() == mesh.vertex_count());
   for (size_t i = 1; i < order.size(); ++i) {
     sorted += static_cast<double>(plc::length(mesh.at(order[i]) - mesh.at(order[i - 1])));

@@ -6,6 +6,7 @@
 #include "engine/constants.h"
 #include "engine/edge_constraints.h"
 #include "engine/state_hash.h"
+#include "pyramid/memory.h"
 #include "tests/kernel_fixtures.h"
 #include "tests/sample_surfaces.h"
 #include "tests/sample_volumes.h"
@@ -170,7 +171,7 @@ TEST_CASE("vertices are due when they have moved far, waited long or are awake",
   mesh.path[7] = far;
   mesh.path[8] = std::nextafter(far, 0.0F);
   mesh.wake(90);
-  CHECK(resolution.take_due(false) == std::vector<uint32_t>{7, 90});
+  CHECK(resolution.take_due(false) == plc::Vector<uint32_t>{7, 90});
   CHECK(mesh.path[7] == 0);
   CHECK(mesh.path[8] > 0);
   CHECK(mesh.idle[90] == 0);

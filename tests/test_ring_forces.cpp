@@ -7,6 +7,7 @@
 #include "kernel_fixtures.h"
 #include "kernels/lane_sum.h"
 #include "kernels/scalar.h"
+#include "pyramid/memory.h"
 
 namespace {
 
@@ -174,7 +175,7 @@ TEST_CASE("normals are the sum of the cross products around the ring, of length 
   for (const uint32_t u : rings.rings[33]) rings.position[u] = rings.position[33];  // a sum of 0
   std::vector<Vector> expected(rings.count());
   for (uint32_t v = 0; v < rings.count(); ++v) {
-    const std::vector<uint32_t>& ring = rings.rings[v];
+    const plc::Vector<uint32_t>& ring = rings.rings[v];
     Vector sum{};
     for (size_t k = 0; k < ring.size(); ++k) {
       add(sum, cross(at(rings, ring[k]) - at(rings, v),
@@ -202,7 +203,7 @@ TEST_CASE("normals are the sum of the cross products around the ring, of length 
 TEST_CASE("normals and Laplacians of one walk have the bits of two, on the listed blocks only",
           "[kernels]") {
   const RandomRings rings = mixed_rings(10, 12);
-  const std::vector<uint32_t> list = {0, 3, 4, 5, 9};
+  const plc::Vector<uint32_t> list = {0, 3, 4, 5, 9};
   const plc::Blocks blocks{list.data(), list.size()};
   const Packed untouched{kUntouched, kUntouched, kUntouched, kUntouched};
   std::vector<Packed> expected(rings.count(), untouched);
@@ -226,7 +227,7 @@ TEST_CASE("normals and Laplacians of one walk have the bits of two, on the liste
 TEST_CASE("the normal of a vertex seen with its ring counter-clockwise points at the viewer",
           "[kernels]") {
   // Vertex 0 at the origin, its ring in the plane z = 0 counter-clockwise seen from +z.
-  std::vector<uint32_t> columns(plc::kRingColumns * plc::kRingLanes, 0);
+  plc::Vector<uint32_t> columns(plc::kRingColumns * plc::kRingLanes, 0);
   for (uint32_t k = 0; k < 4; ++k) columns[k * plc::kRingLanes] = k + 1;
   std::vector<uint16_t> valence(plc::kRingLanes, 0);
   valence[0] = 4;
@@ -252,7 +253,7 @@ TEST_CASE("an edge as long as a limit violates it", "[kernels]") {
   rings.position[0] = {0, 0, 0, 0};
   for (const uint32_t u : rings.rings[0]) rings.position[u] = {3, 4, 0, 0};
   const auto flags_at_0 = [&](SimdTarget simd, float min_squared, float max_squared) {
-    std::vector<uint8_t> flags(rings.count(), 9);
+    plc::Vector<uint8_t> flags(rings.count(), 9);
     kernels::edge_violations(simd, rings.view(), rings.position.data(), min_squared, max_squared, 0,
                              16, flags.data());
     return static_cast<int>(flags[0]);
@@ -276,7 +277,7 @@ TEST_CASE("edge violations are found in columns and tails alike", "[kernels]") {
   for (const SimdTarget simd : plc::available_simd_targets()) {
     for (const auto& [begin, end] : kRanges) {
       CAPTURE(plc::simd_target_name(simd), begin, end);
-      std::vector<uint8_t> flags(rings.count(), 9);
+      plc::Vector<uint8_t> flags(rings.count(), 9);
       kernels::edge_violations(simd, rings.view(), rings.position.data(), min_squared, max_squared,
                                begin, end, flags.data());
       for (uint32_t v = 0; v < rings.count(); ++v) {
@@ -309,7 +310,7 @@ TEST_CASE("a face that is turned against the normal is found, in columns and tai
   int turned = 0, plain = 0;
   for (const SimdTarget simd : plc::available_simd_targets()) {
     for (const float most : {0.0F, 0.3F}) {
-      std::vector<uint8_t> flags(count, 9);
+      plc::Vector<uint8_t> flags(count, 9);
       kernels::turned_faces(simd, rings.view(), rings.position.data(), all, n, n + count,
                             n + 2 * count, most, flags.data());
       for (uint32_t v = 0; v < count; ++v) {

@@ -37,12 +37,12 @@ class ThreadExecutor final : public plc::Executor {
   size_t threads_;
 };
 
-std::vector<FacePair> pairs_of(const Soup& m) {
+plc::Vector<FacePair> pairs_of(const Soup& m) {
   return plc::self_intersections(m.xyz.data(), m.abc.data(), m.face_count(), plc::SerialExecutor());
 }
 
-std::vector<FacePair> every_pair_tested(const Soup& m) {
-  std::vector<FacePair> pairs;
+plc::Vector<FacePair> every_pair_tested(const Soup& m) {
+  plc::Vector<FacePair> pairs;
   const auto faces = static_cast<uint32_t>(m.face_count());
   for (uint32_t f = 0; f < faces; ++f) {
     const plc::Triangle a = plc::make_triangle(m.xyz.data(), m.abc.data() + 3 * f);
@@ -99,7 +99,7 @@ TEST_CASE("a face folded over an edge intersects its neighbour", "[self_intersec
   Soup m;
   m.xyz = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0.2, 0.5, 0};
   m.abc = {0, 1, 2, 1, 0, 3};
-  CHECK(pairs_of(m) == std::vector<FacePair>{{0, 1}});
+  CHECK(pairs_of(m) == plc::Vector<FacePair>{{0, 1}});
   m.xyz[11] = 1e-12;
   CHECK(pairs_of(m).empty());
 }
@@ -124,7 +124,7 @@ TEST_CASE("coplanar faces that overlap intersect", "[self_intersection]") {
   Soup m;
   m.xyz = {0, 0, 0.1, 3, 0, 0.1, 0, 3, 0.1, 1, 1, 0.1, 4, 1, 0.1, 1, 4, 0.1, 5, 5, 0.1};
   m.abc = {0, 1, 2, 3, 4, 5, 4, 6, 5};
-  CHECK(pairs_of(m) == std::vector<FacePair>{{0, 1}});
+  CHECK(pairs_of(m) == plc::Vector<FacePair>{{0, 1}});
 }
 
 TEST_CASE("faces of zero area are left out of the search", "[self_intersection]") {

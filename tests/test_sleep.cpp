@@ -7,6 +7,7 @@
 #include "engine/constants.h"
 #include "engine/evolution.h"
 #include "engine/refinement.h"
+#include "pyramid/memory.h"
 #include "tests/kernel_fixtures.h"
 #include "tests/sample_runs.h"
 #include "tests/sample_surfaces.h"
@@ -85,7 +86,7 @@ TEST_CASE("a vertex that is touched wakes its block", "[sleep]") {
   mesh.place(100, mesh.at(100));
   mesh.wake(500);
   sleep.choose(false);
-  CHECK(sleep.awake() == std::vector<uint32_t>{100 / plc::kRingLanes, 500 / plc::kRingLanes});
+  CHECK(sleep.awake() == plc::Vector<uint32_t>{100 / plc::kRingLanes, 500 / plc::kRingLanes});
   sleep.wake_all();
   sleep.choose(false);
   CHECK_FALSE(sleep.any_asleep());
@@ -140,7 +141,7 @@ TEST_CASE("the rim is what sleeps next to what is awake", "[sleep]") {
   }
   CHECK(expected.size() > 4);
   const auto& found = sleep.awake_and_rim();
-  CHECK(std::vector<uint32_t>(expected.begin(), expected.end()) == found);
+  CHECK(plc::Vector<uint32_t>(expected.begin(), expected.end()) == found);
 }
 
 TEST_CASE("vertices that were created since are not taken for sleepers", "[sleep]") {
@@ -156,7 +157,7 @@ TEST_CASE("vertices that were created since are not taken for sleepers", "[sleep
 
 TEST_CASE("who is awake does not depend on the executor", "[sleep]") {
   Mesh one, other;
-  std::vector<uint32_t> awake;
+  plc::Vector<uint32_t> awake;
   for (Mesh* mesh : {&one, &other}) {
     samples::fill_mesh(*mesh, samples::sphere(6), 0.02);
     for (uint32_t v = 0; v < mesh->slots(); ++v) {
@@ -190,7 +191,7 @@ TEST_CASE("a run with sleepers ends where one without ends, within what epsilon 
           "[sleep]") {
   const samples::Volume volume = samples::blobs(samples::empty_volume({56, 56, 56}), 14, 5);
   std::vector<double> volumes;
-  std::vector<uint32_t> vertices;
+  plc::Vector<uint32_t> vertices;
   for (const bool sleeping : {false, true}) {
     samples::Run run = samples::make_run("blobs", volume, 0.4, 1);
     run.recovery.sleeping = sleeping;

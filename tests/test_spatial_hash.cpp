@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "pyramid/memory.h"
 #include "tests/kernel_fixtures.h"
 #include "tests/sample_surfaces.h"
 #include "tests/sample_volumes.h"
@@ -214,7 +215,7 @@ TEST_CASE("queries see vertices in one order whatever built the table", "[spatia
   for (int i = 0; i < 50; ++i) {
     const Vec3 low = somewhere(random, -12, 12);
     const Vec3 high = low + Vec3{3, 3, 3};
-    std::vector<uint32_t> first, second;
+    plc::Vector<uint32_t> first, second;
     one.visit_box(mesh, low, high, [&](uint32_t v, Vec3) { first.push_back(v); });
     other.visit_box(mesh, low, high, [&](uint32_t v, Vec3) { second.push_back(v); });
     CHECK(first == second);

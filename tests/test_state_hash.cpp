@@ -6,25 +6,26 @@
 #include <functional>
 #include <string>
 
+#include "pyramid/memory.h"
 #include "tests/sample_surfaces.h"
 
 namespace {
 
 using plc::Mesh;
 
-uint64_t fnv(const std::vector<uint8_t>& bytes) {
+uint64_t fnv(const plc::Vector<uint8_t>& bytes) {
   plc::Fnv hash;
   hash.add_all(bytes);
   return hash.value();
 }
 
 template <typename T>
-void append(std::vector<uint8_t>& bytes, T value) {
+void append(plc::Vector<uint8_t>& bytes, T value) {
   for (size_t i = 0; i < sizeof(T); ++i) bytes.push_back(static_cast<uint8_t>(value >> (8 * i)));
 }
 
-std::vector<uint8_t> serialised(const Mesh& mesh) {
-  std::vector<uint8_t> bytes;
+plc::Vector<uint8_t> serialised(const Mesh& mesh) {
+  plc::Vector<uint8_t> bytes;
   append(bytes, uint64_t{mesh.vertex_count()});
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     for (const float c : {mesh.at(v).x, mesh.at(v).y, mesh.at(v).z}) {
@@ -32,7 +33,7 @@ std::vector<uint8_t> serialised(const Mesh& mesh) {
     }
   }
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
-    std::vector<uint32_t> ring;
+    plc::Vector<uint32_t> ring;
     for (uint32_t k = 0; k < mesh.valence(v); ++k) ring.push_back(mesh.neighbor(v, k));
     std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
     append(bytes, mesh.valence(v));
@@ -56,7 +57,7 @@ TEST_CASE("the hash is the FNV-1a of count, positions and rings", "[state_hash]"
     samples::fill_mesh(mesh, soup, 1);
     CHECK(plc::state_hash(mesh) == fnv(serialised(mesh)));
   }
-  CHECK(plc::state_hash(Mesh()) == fnv(std::vector<uint8_t>(8, 0)));
+  CHECK(plc::state_hash(Mesh()) == fnv(plc::Vector<uint8_t>(8, 0)));
 }
 
 TEST_CASE("where a ring starts does not matter", "[state_hash]") {
@@ -80,7 +81,7 @@ TEST_CASE("a bit of a position, a ring's order, a swap of ids: each changes the 
   turned.set_ring(7, ring);
   CHECK(plc::state_hash(turned) != before);
   Mesh renumbered = filled();
-  std::vector<uint32_t> order;
+  plc::Vector<uint32_t> order;
   for (uint32_t v = 0; v < renumbered.slots(); ++v) order.push_back(v);
   std::swap(order[4], order[20]);
   renumbered.renumber(order);

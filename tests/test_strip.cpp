@@ -16,14 +16,14 @@ using plc::Vec3;
 constexpr double kPi = 3.14159265358979323846;
 
 // Corners of a polygon at random angles in order, `backwards` turning the other way.
-std::vector<Vec3> polygon(samples::Random& random, uint32_t count, double z, bool backwards) {
+plc::Vector<Vec3> polygon(samples::Random& random, uint32_t count, double z, bool backwards) {
   std::vector<double> angles;
   for (uint32_t i = 0; i < count; ++i) angles.push_back(random.uniform(0, 2 * kPi));
   std::sort(angles.begin(), angles.end());
   if (backwards) std::reverse(angles.begin(), angles.end());
   const auto start = random.integer(0, count - 1);
   std::rotate(angles.begin(), angles.begin() + start, angles.end());
-  std::vector<Vec3> corners;
+  plc::Vector<Vec3> corners;
   for (const double a : angles) {
     const double r = random.uniform(0.7, 1.3);
     corners.push_back({static_cast<float>(r * std::cos(a)), static_cast<float>(r * std::sin(a)),
@@ -32,8 +32,8 @@ std::vector<Vec3> polygon(samples::Random& random, uint32_t count, double z, boo
   return corners;
 }
 
-std::vector<Vec3> anywhere(samples::Random& random, uint32_t count) {
-  std::vector<Vec3> points;
+plc::Vector<Vec3> anywhere(samples::Random& random, uint32_t count) {
+  plc::Vector<Vec3> points;
   for (uint32_t i = 0; i < count; ++i) {
     points.push_back({static_cast<float>(random.uniform(-1, 1)),
                       static_cast<float>(random.uniform(-1, 1)),
@@ -44,7 +44,7 @@ std::vector<Vec3> anywhere(samples::Random& random, uint32_t count) {
 
 // Empty where the rungs are a strip: as many as corners, each a different edge, each step moves one
 // corner on, p forwards or q backwards, and every corner has a rung.
-std::string broken_strip(const std::vector<Rung>& rungs, uint32_t d, uint32_t e) {
+std::string broken_strip(const plc::Vector<Rung>& rungs, uint32_t d, uint32_t e) {
   if (rungs.size() != d + e) return std::to_string(rungs.size()) + " rungs";
   std::set<std::pair<uint32_t, uint32_t>> edges;
   std::vector<bool> p(d), q(e);
@@ -67,15 +67,15 @@ std::string broken_strip(const std::vector<Rung>& rungs, uint32_t d, uint32_t e)
   return {};
 }
 
-double total(const std::vector<Rung>& rungs, const std::vector<Vec3>& p,
-             const std::vector<Vec3>& q) {
+double total(const plc::Vector<Rung>& rungs, const plc::Vector<Vec3>& p,
+             const plc::Vector<Vec3>& q) {
   double sum = 0;
   for (const Rung& r : rungs) sum += static_cast<double>(plc::length(p[r.i] - q[r.j]));
   return sum;
 }
 
 // The least sum over every strip there is.
-double least(const std::vector<Vec3>& p, const std::vector<Vec3>& q) {
+double least(const plc::Vector<Vec3>& p, const plc::Vector<Vec3>& q) {
   const auto d = static_cast<uint32_t>(p.size()), e = static_cast<uint32_t>(q.size());
   double best = std::numeric_limits<double>::infinity();
   // Steps as bits, 1: i grows. The last step of a strip from its first rung at p[0] is one of i.
@@ -83,7 +83,7 @@ double least(const std::vector<Vec3>& p, const std::vector<Vec3>& q) {
     if ((steps >> (d + e - 1) & 1) == 0) continue;
     if (static_cast<uint32_t>(__builtin_popcount(steps)) != d) continue;
     for (uint32_t start = 0; start < e; ++start) {
-      std::vector<Rung> rungs{{0, start}};
+      plc::Vector<Rung> rungs{{0, start}};
       for (uint32_t k = 0; k + 1 < d + e; ++k) {
         Rung r = rungs.back();
         if ((steps >> k & 1) != 0) {
@@ -134,7 +134,7 @@ TEST_CASE("one corner that is nearest to all does not take an edge twice", "[str
   for (uint32_t d = 3; d <= 9; ++d) {
     for (uint32_t e = 3; e <= 9; ++e) {
       for (uint32_t hub = 0; hub < d + e; ++hub) {
-        std::vector<Vec3> p, q;
+        plc::Vector<Vec3> p, q;
         for (uint32_t i = 0; i < d; ++i) p.push_back({100 + static_cast<float>(i), 0, 0});
         for (uint32_t j = 0; j < e; ++j) q.push_back({-100 - static_cast<float>(j), 0, 0});
         (hub < d ? p[hub] : q[hub - d]) = {hub < d ? -100.0F : 100.0F, 0.5F, 0};
@@ -151,9 +151,9 @@ TEST_CASE("one corner that is nearest to all does not take an edge twice", "[str
 TEST_CASE("polygons that have shrunk to points or coincide have a strip", "[strip]") {
   for (uint32_t d = 3; d <= 9; ++d) {
     for (uint32_t e = 3; e <= 9; ++e) {
-      const std::vector<Vec3> p(d, Vec3{1, 2, 3});
-      CHECK(broken_strip(plc::shortest_strip(p, std::vector<Vec3>(e, Vec3{1, 2, 3})), d, e) == "");
-      CHECK(broken_strip(plc::shortest_strip(p, std::vector<Vec3>(e, Vec3{4, 2, 3})), d, e) == "");
+      const plc::Vector<Vec3> p(d, Vec3{1, 2, 3});
+      CHECK(broken_strip(plc::shortest_strip(p, plc::Vector<Vec3>(e, Vec3{1, 2, 3})), d, e) == "");
+      CHECK(broken_strip(plc::shortest_strip(p, plc::Vector<Vec3>(e, Vec3{4, 2, 3})), d, e) == "");
       samples::Random random(d * 10 + e);
       const auto q = polygon(random, e, 0, true);
       CHECK(broken_strip(plc::shortest_strip(p, q), d, e) == "");
@@ -178,7 +178,7 @@ TEST_CASE("the strip between facing polygons is the shortest there is", "[strip]
 
 TEST_CASE("regular polygons that face each other are joined straight across", "[strip]") {
   for (uint32_t n = 3; n <= 9; ++n) {
-    std::vector<Vec3> p, q;
+    plc::Vector<Vec3> p, q;
     for (uint32_t i = 0; i < n; ++i) {
       const double a = 2 * kPi * i / n;
       p.push_back({static_cast<float>(std::cos(a)), static_cast<float>(std::sin(a)), 0});

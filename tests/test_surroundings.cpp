@@ -7,6 +7,7 @@
 #include "engine/edge.h"
 #include "engine/refinement.h"
 #include "engine/risk.h"
+#include "pyramid/memory.h"
 #include "tests/kernel_fixtures.h"
 #include "tests/sample_surfaces.h"
 #include "tests/sample_volumes.h"
@@ -31,12 +32,12 @@ void fill_scene(Mesh& mesh) {
 }
 
 struct Found {
-  std::vector<VertexPair> too_near;
+  plc::Vector<VertexPair> too_near;
   std::set<uint32_t> at_risk;
 };
 
 // Every due vertex with every other.
-Found expected(const Mesh& mesh, const std::vector<uint32_t>& due) {
+Found expected(const Mesh& mesh, const plc::Vector<uint32_t>& due) {
   const auto near = plc::kMinApart * static_cast<float>(mesh.delta);
   const auto far = plc::kRiskReach * static_cast<float>(mesh.delta);
   Found found;
@@ -56,15 +57,15 @@ Found expected(const Mesh& mesh, const std::vector<uint32_t>& due) {
   return found;
 }
 
-Found searched(Surroundings& around, const Mesh& mesh, const std::vector<uint32_t>& due) {
+Found searched(Surroundings& around, const Mesh& mesh, const plc::Vector<uint32_t>& due) {
   plc::SpatialHash hash;
   hash.build(mesh, plc::kHashCell * static_cast<float>(mesh.delta), samples::kSerial);
   around.search(due, hash);
   return {around.too_near(), {around.at_risk().begin(), around.at_risk().end()}};
 }
 
-std::vector<uint32_t> every(const Mesh& mesh, uint32_t step) {
-  std::vector<uint32_t> due;
+plc::Vector<uint32_t> every(const Mesh& mesh, uint32_t step) {
+  plc::Vector<uint32_t> due;
   for (uint32_t v = 0; v < mesh.slots(); v += step) {
     if (mesh.alive(v)) due.push_back(v);
   }
@@ -127,7 +128,7 @@ TEST_CASE("what is found depends neither on threads nor on the SIMD target", "[s
   const auto due = every(mesh, 2);
   Surroundings one(mesh, samples::kSerial, plc::SimdTarget::kScalar);
   const Found first = searched(one, mesh, due);
-  const std::vector<uint32_t> in_order = one.at_risk();
+  const plc::Vector<uint32_t> in_order = one.at_risk();
   const fixtures::ThreadExecutor threads(3);
   for (const plc::SimdTarget simd : plc::available_simd_targets()) {
     Surroundings other(mesh, threads, simd);

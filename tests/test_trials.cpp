@@ -7,6 +7,7 @@
 #include "engine/deletion.h"
 #include "engine/edge_constraints.h"
 #include "engine/inversion.h"
+#include "pyramid/memory.h"
 #include "tests/kernel_fixtures.h"
 #include "tests/sample_surfaces.h"
 #include "tests/sample_volumes.h"
@@ -39,8 +40,8 @@ plc::SpatialHash hash_of(const Mesh& mesh) {
   return hash;
 }
 
-std::vector<Candidate> deletions_and_inversions(const Mesh& mesh) {
-  std::vector<Candidate> found;
+plc::Vector<Candidate> deletions_and_inversions(const Mesh& mesh) {
+  plc::Vector<Candidate> found;
   samples::for_each_edge(mesh, [&](uint32_t u, uint32_t k) {
     const plc::Edge e = plc::edge_at(mesh, u, k);
     const Candidate inversion{Operation::kInversion, 0, e};
@@ -54,8 +55,8 @@ std::vector<Candidate> deletions_and_inversions(const Mesh& mesh) {
 }
 
 // The closed rings of the edge's vertices and apexes.
-std::vector<uint32_t> footprint(const Mesh& mesh, const plc::Edge& e) {
-  std::vector<uint32_t> all;
+plc::Vector<uint32_t> footprint(const Mesh& mesh, const plc::Edge& e) {
+  plc::Vector<uint32_t> all;
   for (const uint32_t v : {e.u, e.v, e.a, e.b}) {
     all.push_back(v);
     for (const uint32_t w : mesh.ring(v)) all.push_back(w);
@@ -64,9 +65,9 @@ std::vector<uint32_t> footprint(const Mesh& mesh, const plc::Edge& e) {
 }
 
 // Those, in this order, of which no vertex belongs to one before.
-std::vector<Candidate> apart(const Mesh& mesh, const std::vector<Candidate>& candidates) {
+plc::Vector<Candidate> apart(const Mesh& mesh, const plc::Vector<Candidate>& candidates) {
   std::set<uint32_t> claimed;
-  std::vector<Candidate> chosen;
+  plc::Vector<Candidate> chosen;
   for (const Candidate& c : candidates) {
     const auto own = footprint(mesh, c.edge);
     const bool free =
@@ -119,8 +120,8 @@ TEST_CASE("a trial says what the guard says when its turn has come", "[trials]")
     for (int run = 0; run < 3; ++run) {
       const auto candidates = apart(mesh, deletions_and_inversions(mesh));
       REQUIRE(candidates.size() > 20);
-      std::vector<const Candidate*> tried;
-      std::vector<uint32_t> before;
+      plc::Vector<const Candidate*> tried;
+      plc::Vector<uint32_t> before;
       for (size_t i = 0; i < candidates.size(); ++i) {
         if (i % 5 != 0) tried.push_back(&candidates[i]);
         before.push_back(asked_now(mesh, hash, candidates[i]));

@@ -7,6 +7,7 @@
 
 #include "engine/iso_surface.h"
 #include "engine/schedule.h"
+#include "pyramid/memory.h"
 #include "tests/sample_sides.h"
 #include "tests/sample_surfaces.h"
 #include "tests/sample_volumes.h"
@@ -29,7 +30,7 @@ ImageView view(std::array<int32_t, 3> dims, std::array<float, 3> scale = {1, 1, 
   return v;
 }
 
-std::vector<uint8_t> sides(const Mesh& mesh, const ImageView& image) {
+plc::Vector<uint8_t> sides(const Mesh& mesh, const ImageView& image) {
   return samples::sides_of(mesh, image);
 }
 
@@ -39,7 +40,7 @@ size_t check_sides(const Soup& soup, const ImageView& image, double room,
                    const std::function<double(double, double, double)>& depth) {
   Mesh mesh;
   samples::fill_mesh(mesh, soup, 1);
-  const std::vector<uint8_t> inside = sides(mesh, image);
+  const plc::Vector<uint8_t> inside = sides(mesh, image);
   REQUIRE(inside.size() == static_cast<size_t>(image.dims[0]) * static_cast<size_t>(image.dims[1]) *
                                static_cast<size_t>(image.dims[2]));
   size_t i = 0, wrong = 0, in = 0;
@@ -116,7 +117,7 @@ TEST_CASE("an iso-surface encloses the voxels that it was made around", "[voxel_
   image.data = volume.values.data();
   Mesh mesh;
   REQUIRE(plc::iso_surface(image, 0.4F, true, samples::kSerial, mesh).ok());
-  const std::vector<uint8_t> inside = sides(mesh, image);
+  const plc::Vector<uint8_t> inside = sides(mesh, image);
   size_t wrong = 0, in = 0;
   for (size_t i = 0; i < inside.size(); ++i) {
     wrong += (inside[i] != 0) != (volume.values[i] >= 0.4F) ? 1 : 0;
@@ -166,10 +167,10 @@ TEST_CASE("a row says whether a voxel of it may be inside, from any thread", "[v
   Mesh mesh;
   samples::fill_mesh(mesh, samples::moved(samples::torus(60, 40, 8, 3), 14, 14, 6), 1);
   const ImageView image = view({29, 29, 13});
-  const std::vector<uint8_t> one = sides(mesh, image);
+  const plc::Vector<uint8_t> one = sides(mesh, image);
   const plc::VoxelSides voxel_sides(mesh, image);
   const plc::Schedule schedule(3);
-  std::vector<uint8_t> got(one.size(), 9), wrong(29 * 13, 0);
+  plc::Vector<uint8_t> got(one.size(), 9), wrong(29 * 13, 0);
   schedule.run(wrong.size(), [&](size_t row) {
     uint8_t* to = got.data() + row * 29;
     const bool any =
