@@ -32,7 +32,7 @@ struct StartSpec {
   Init init = Init::kBubble;
   std::array<int, 3> bubbles{1, 1, 1};
   std::vector<Seed> seeds;
-  Pyramid mask;               // kMask: a pyramid like the image's, the object near 1
+  Pyramid mask;          // kMask: a pyramid like the image's, the object near 1
   Vector<double> xyz;    // kMesh: three voxel indices of the unpadded I_0 per vertex
   Vector<uint32_t> abc;  // ... three vertices per face, counter-clockwise seen from outside
 };
