@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "tools/printable.h"
 #include "tools/volume_io.h"
 
 namespace plc::tools {
@@ -25,8 +26,8 @@ class Line {
     if (!word(text)) throw Failure{name_ + "no " + what};
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    if (*end != '\0' || !std::isfinite(value)) {
-      throw Failure{name_ + what + " '" + text + "' is not a finite number"};
+    if (end != text.c_str() + text.size() || !std::isfinite(value)) {
+      throw Failure{name_ + what + " '" + printable(text) + "' is not a finite number"};
     }
     return value;
   }
@@ -56,7 +57,8 @@ AttachFile read_attach_file(const std::string& path) {
     Line line(path, number, text);
     std::string kind;
     if (!line.word(kind)) continue;
-    if (kind != "attach" && kind != "pin") line.fail("'" + kind + "' is neither attach nor pin");
+    if (kind != "attach" && kind != "pin")
+      line.fail("'" + printable(kind) + "' is neither attach nor pin");
     double place[3] = {line.number("x"), line.number("y"), line.number("z")};
     const double radius = line.positive("radius");
     std::string rest;
@@ -70,7 +72,7 @@ AttachFile read_attach_file(const std::string& path) {
       }
       places.attachments.push_back({{place[0], place[1], place[2]}, radius, strength});
     }
-    if (line.word(rest)) line.fail("'" + rest + "' is too much");
+    if (line.word(rest)) line.fail("'" + printable(rest) + "' is too much");
   }
   if (file.bad()) throw Failure{path + ": cannot be read"};
   if (places.attachments.empty() && places.pins.empty()) {
