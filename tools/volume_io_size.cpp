@@ -149,6 +149,14 @@ uint64_t size_of(const std::string& path) {
   return size;
 }
 
+std::string beside(const std::string& path, const std::string& name) {
+  constexpr size_t kLongest = 255;
+  if (name.empty() || name.size() > kLongest || !is_printable(name)) {
+    throw Failure{path + ": names a file \"" + printable(name) + "\", which cannot be"};
+  }
+  return (std::filesystem::path(path).parent_path() / name).string();
+}
+
 void require_bytes(const std::string& path, uint64_t found, uint64_t needed) {
   if (found < needed) too_short(path, found, needed);
 }

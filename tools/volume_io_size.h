@@ -27,6 +27,9 @@ void require_ratio(const std::string& path, uint64_t packed, uint64_t needed, ui
 // Unpacks the rest of the file, `packed` bytes at most, without keeping it.
 void check_zlib(const std::string& path, std::ifstream& file, uint64_t packed, uint64_t needed);
 
+// The path of a file of that name in the folder of `path`.
+std::string beside(const std::string& path, const std::string& name);
+
 // "slice%03d.raw": a name with one number in it. ITK's libraries print with what a header gives:
 // anything else must not reach them. The name for a number.
 bool is_numbered_name(const std::string& pattern);

@@ -50,10 +50,6 @@ int64_t whole(const std::string& path, const std::string& text, int64_t fallback
   return value;
 }
 
-std::string beside(const std::string& path, const std::string& name) {
-  return (std::filesystem::path(path).parent_path() / name).string();
-}
-
 // "LIST [2D]": names follow, a line each. Each file must be there: what is counted can be read.
 void check_list(const std::string& path, std::ifstream& file, uint64_t needed) {
   uint64_t found = 0;

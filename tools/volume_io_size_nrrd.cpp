@@ -1,7 +1,6 @@
 // Can an NRRD hold its voxels? Whether it does its reader notices: here before memory is taken.
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <sstream>
@@ -51,7 +50,7 @@ class DataFiles {
       while (!name.empty() && std::isspace(static_cast<unsigned char>(name.back())) != 0) {
         name.pop_back();
       }
-      if (!name.empty()) size += size_of(beside(name));
+      if (!name.empty()) size += size_of(beside(path_, name));
     }
     return size;
   }
@@ -72,12 +71,9 @@ class DataFiles {
     }
     uint64_t size = 0;
     for (int64_t i = 0; i <= (last - first) / step; ++i) {
-      size += size_of(beside(numbered_name(pattern, first + i * step)));
+      size += size_of(beside(path_, numbered_name(pattern, first + i * step)));
     }
     return size;
-  }
-  std::string beside(const std::string& name) const {
-    return (std::filesystem::path(path_).parent_path() / name).string();
   }
 
  private:
@@ -114,7 +110,7 @@ void check_nrrd_size(const std::string& path, const ItkHeader& header) {
   } else if (is_numbered_name(data.substr(0, data.find(' ')))) {
     size = files.size_of_pattern(data);
   } else {
-    size = size_of(files.beside(data));
+    size = size_of(beside(path, data));
   }
   const std::string encoding = nrrd.fields["encoding"];
   if (encoding == "raw") return require_bytes(path, size, voxel_bytes(header));

@@ -1,12 +1,11 @@
-// Bytes taken for numbers, and a file that is in memory only.
+// Bytes taken for numbers, and for a file.
 #pragma once
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
-#include <bit>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <string>
+#include <system_error>
 
 #include "tests/fuzz/targets.h"
 
@@ -51,25 +50,31 @@ inline void require(bool holds, const std::string& what) {
   if (!holds) throw Broken(what);
 }
 
-// Holds other bytes for each input, under a path that readers can open.
-class MemoryFile {
+// A file, alone in a folder of its own, that holds other bytes for each input.
+class ScratchFile {
  public:
-  MemoryFile() : descriptor_(memfd_create("pellicle-fuzz", MFD_CLOEXEC)) {
-    require(descriptor_ >= 0, "no file in memory");
+  ScratchFile() {
+    std::string folder = (std::filesystem::temp_directory_path() / "pellicle-fuzz-XXXXXX").string();
+    require(mkdtemp(folder.data()) != nullptr, "no folder for a file");
+    folder_ = folder;
   }
-  ~MemoryFile() { close(descriptor_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~ScratchFile() {
+    std::error_code error;
+    std::filesystem::remove_all(folder_, error);
+  }
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
 
-  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+  std::string path() const { return (folder_ / "a").string(); }
   void put(Bytes bytes) const {
-    require(ftruncate(descriptor_, 0) == 0, "the file in memory cannot be emptied");
-    const auto written = pwrite(descriptor_, bytes.data(), bytes.size(), 0);
-    require(written == static_cast<ssize_t>(bytes.size()), "the file in memory cannot be written");
+    std::ofstream file(path(), std::ios::binary | std::ios::trunc);
+    file.write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+    require(file.good(), "the file cannot be written");
   }
 
  private:
-  int descriptor_;
+  std::filesystem::path folder_;
 };
 
 }  // namespace fuzz

@@ -56,11 +56,11 @@ void mesh_vtp(Bytes file) {
 }
 
 void inv3(Bytes file) {
-  static const MemoryFile memory;
-  memory.put(file);
-  read_or_refuse(memory.path(), [&] {
-    const LoadedVolume volume = plc::tools::read_inv3(memory.path());
-    const int64_t count = plc::tools::checked_voxel_count(memory.path(), volume.image.dims);
+  static const ScratchFile scratch;
+  scratch.put(file);
+  read_or_refuse(scratch.path(), [&] {
+    const LoadedVolume volume = plc::tools::read_inv3(scratch.path());
+    const int64_t count = plc::tools::checked_voxel_count(scratch.path(), volume.image.dims);
     require(volume.bytes.size() ==
                 static_cast<size_t>(count) * plc::tools::voxel_size(volume.image.type),
             "voxels that are not as many as the image has");
@@ -68,10 +68,10 @@ void inv3(Bytes file) {
 }
 
 void attach(Bytes file) {
-  static const MemoryFile memory;
-  memory.put(file);
-  read_or_refuse(memory.path(), [&] {
-    const plc::tools::AttachFile places = plc::tools::read_attach_file(memory.path());
+  static const ScratchFile scratch;
+  scratch.put(file);
+  read_or_refuse(scratch.path(), [&] {
+    const plc::tools::AttachFile places = plc::tools::read_attach_file(scratch.path());
     require(!places.attachments.empty() || !places.pins.empty(), "a file of no places");
     for (const plc_attachment& a : places.attachments) {
       require(a.radius > 0 && a.strength > 0, "an attachment without radius or strength");

@@ -1,5 +1,5 @@
-// fuzz_seeds FOLDER: small valid inputs of the readers, FOLDER/TARGET/NAME, for libFuzzer to start
-// from.
+// fuzz_seeds FOLDER: what libFuzzer starts from, FOLDER/TARGET/NAME: small valid files for the
+// readers, random bytes for the targets of the C API.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +8,7 @@
 
 #include "tests/sample_files.h"
 #include "tests/sample_meshes.h"
+#include "tests/sample_volumes.h"
 #include "tools/mesh_io.h"
 
 namespace {
@@ -171,6 +172,19 @@ void put_texts(const Seeds& seeds) {
                 '\0' + words("--structure bone=--iso=226 --quiet"));
 }
 
+// What the targets of the C API make calls of: no bytes are wrong.
+void put_random(const Seeds& seeds) {
+  constexpr size_t kBytes = 300;
+  samples::Random random(1);
+  for (const std::string target : {"api", "mesh", "state", "evolution"}) {
+    for (int i = 0; i < 24; ++i) {
+      std::string bytes(kBytes, '\0');
+      for (char& byte : bytes) byte = static_cast<char>(random.bits() >> 56);
+      seeds.put(target, std::to_string(i), bytes);
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -184,5 +198,6 @@ int main(int argc, char** argv) {
   put_inv3(seeds);
   put_volumes(seeds);
   put_texts(seeds);
+  put_random(seeds);
   return 0;
 }

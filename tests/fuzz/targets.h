@@ -15,6 +15,13 @@ struct Broken : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// The C API: any calls with any arguments; any mesh; saved states, altered; an evolution step by
+// step, which is interrupted, saved and restored.
+void api(Bytes bytes);
+void mesh(Bytes bytes);
+void state(Bytes bytes);
+void evolution(Bytes bytes);
+
 // Readers of the tools: the bytes are a file.
 void mesh_obj(Bytes file);
 void mesh_off(Bytes file);
@@ -24,8 +31,8 @@ void mesh_vtp(Bytes file);
 void inv3(Bytes file);
 void attach(Bytes file);
 
-// A file of a volume, and behind it the header that a format's library may have made of it (see
-// volume_targets.cpp): what stands between that header and the memory for its voxels.
+// A file of a volume, and behind it the header that a format's library may have made of it: what
+// stands between that header and the memory for its voxels.
 void volume_nifti(Bytes input);
 void volume_meta(Bytes input);
 void volume_nrrd(Bytes input);
@@ -39,12 +46,25 @@ struct Target {
   void (*run)(Bytes);
 };
 
+inline constexpr Target kTargets[] = {
+    {"api", api},
+    {"mesh", mesh},
+    {"state", state},
+    {"evolution", evolution},
 #ifdef PELLICLE_FUZZ_READERS
-#define PELLICLE_FUZZ_READER_TARGETS                                                              \
-  {"mesh_obj", mesh_obj}, {"mesh_off", mesh_off}, {"mesh_ply", mesh_ply}, {"mesh_stl", mesh_stl}, \
-      {"mesh_vtp", mesh_vtp}, {"inv3", inv3}, {"attach", attach}, {"volume_nifti", volume_nifti}, \
-      {"volume_meta", volume_meta}, {"volume_nrrd", volume_nrrd}, {"volume_tiff", volume_tiff},   \
-      {"options", options},
+    {"mesh_obj", mesh_obj},
+    {"mesh_off", mesh_off},
+    {"mesh_ply", mesh_ply},
+    {"mesh_stl", mesh_stl},
+    {"mesh_vtp", mesh_vtp},
+    {"inv3", inv3},
+    {"attach", attach},
+    {"volume_nifti", volume_nifti},
+    {"volume_meta", volume_meta},
+    {"volume_nrrd", volume_nrrd},
+    {"volume_tiff", volume_tiff},
+    {"options", options},
 #endif
+};
 
 }  // namespace fuzz

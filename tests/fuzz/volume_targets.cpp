@@ -22,8 +22,10 @@ using plc::tools::ItkHeader;
 // Usually small, sometimes about a power of 2 or anything.
 int64_t random_dim(Input& input) {
   switch (input.below(8)) {
-    case 0:
-      return static_cast<int64_t>((uint64_t{1} << input.below(64)) + input.raw<uint8_t>() - 2);
+    case 0: {
+      const uint64_t power = uint64_t{1} << input.below(64);
+      return static_cast<int64_t>(power + input.raw<uint8_t>() - 2);
+    }
     case 1:
       return input.raw<int64_t>();
     default:
@@ -57,12 +59,13 @@ uint64_t bytes_of(const ItkHeader& header) {
 // No file stands for more voxels than its packing can hold, or memory is taken for nothing.
 // `ratio`: of the format's best packing.
 void check_volume(Bytes bytes, ItkFormat format, uint64_t ratio) {
-  static const MemoryFile memory;
+  static const ScratchFile scratch;
   Input input(bytes);
   const ItkHeader made = random_header(input);
-  memory.put(input.rest());
-  const std::string path = memory.path();
-  read_or_refuse(path, [&] {
+  scratch.put(input.rest());
+  const std::string path = scratch.path();
+  // It may be another file that is named: the one that the header leads to.
+  read_or_refuse("", [&] {
     const ItkHeader header = plc::tools::checked_header(path, made);
     plc::tools::check_file_size(path, format, header);
     require(bytes_of(header) <= ratio * input.rest().size(), "a file that cannot hold its voxels");
