@@ -263,9 +263,6 @@ class Caller {
     fill<plc_measures>(
         [&](plc_measures* to) { return plc_surface_measure(context(), surface, space, to); });
     fill<plc_check>([&](plc_check* to) { return plc_surface_check(context(), surface, to); });
-    if (surface != nullptr) {
-      require_valid(context_.get(), surface, "a surface of the engine");
-    }
   }
   void values_of_surface() {
     const plc_surface* surface = maybe(1, surface_.get());
