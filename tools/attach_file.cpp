@@ -38,7 +38,9 @@ class Line {
     return value;
   }
 
-  [[noreturn]] void fail(const std::string& what) const { throw Failure{name_ + what}; }
+  [[noreturn]] void fail_word(const std::string& text, const char* what) const {
+    throw Failure{name_ + "'" + printable(text) + "' " + what};
+  }
 
  private:
   std::istringstream words_;
@@ -57,8 +59,7 @@ AttachFile read_attach_file(const std::string& path) {
     Line line(path, number, text);
     std::string kind;
     if (!line.word(kind)) continue;
-    if (kind != "attach" && kind != "pin")
-      line.fail("'" + printable(kind) + "' is neither attach nor pin");
+    if (kind != "attach" && kind != "pin") line.fail_word(kind, "is neither attach nor pin");
     double place[3] = {line.number("x"), line.number("y"), line.number("z")};
     const double radius = line.positive("radius");
     std::string rest;
@@ -72,7 +73,7 @@ AttachFile read_attach_file(const std::string& path) {
       }
       places.attachments.push_back({{place[0], place[1], place[2]}, radius, strength});
     }
-    if (line.word(rest)) line.fail("'" + printable(rest) + "' is too much");
+    if (line.word(rest)) line.fail_word(rest, "is too much");
   }
   if (file.bad()) throw Failure{path + ": cannot be read"};
   if (places.attachments.empty() && places.pins.empty()) {
