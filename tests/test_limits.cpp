@@ -87,7 +87,7 @@ constexpr uint32_t kAbc[3] = {0, 1, 2};
 
 TEST_CASE("Images of impossible sizes are refused, their voxels are not looked at", "[limits]") {
   const Host host;
-  const uint8_t voxel = 0;
+  alignas(8) const uint8_t voxel = 0;
   constexpr int64_t kSizes[][3] = {{int64_t{1} << 21, int64_t{1} << 21, int64_t{1} << 21},
                                    {int64_t{1} << 60, 2, 2},
                                    {kMax, 2, 2},
@@ -107,7 +107,7 @@ TEST_CASE("Images of impossible sizes are refused, their voxels are not looked a
 
 TEST_CASE("A copy that memory has no room for is refused before it is begun", "[limits]") {
   const Host host(int64_t{1} << 20);
-  const uint8_t voxel = 0;
+  alignas(8) const uint8_t voxel = 0;
   constexpr int64_t kSizes[][3] = {{k31 - 1, 2, 2},
                                    {k31, 2, 2},
                                    {k31 + 1, 2, 2},
