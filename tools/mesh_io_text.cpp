@@ -2,6 +2,7 @@
 
 #include <charconv>
 
+#include "tools/printable.h"
 #include "tools/volume_io.h"
 
 namespace plc::tools {
@@ -71,8 +72,7 @@ int64_t TextReader::to_integer(std::string_view word) const {
 
 void TextReader::fail(const std::string& message) const {
   std::string line = path_ + ": line " + std::to_string(line_) + ": " + message;
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');
+  std::replace_if(line.begin(), line.end(), is_control, '?');
   throw Failure{line};
 }
 

@@ -1,16 +1,12 @@
 // VTK's XML PolyData: written with raw appended arrays; read in every encoding but LZ4 and LZMA.
-#include <expat.h>
-
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <memory>
+#include <cstdlib>
 #include <vector>
 
 #include "tools/mesh_io_formats.h"
 #include "tools/mesh_io_text.h"
 #include "tools/mesh_io_vtp_array.h"
 #include "tools/volume_io.h"
+#include "tools/xml_reader.h"
 
 namespace plc::tools {
 namespace {
@@ -25,7 +21,7 @@ struct Piece {
 };
 
 // Finds the arrays of a file. Only what is before the appended data is XML: raw data would not be.
-class VtpParser {
+class VtpParser : public XmlVisitor {
  public:
   VtpParser(const std::string& path, std::string_view data) : path_(path) {
     const size_t tag = data.find("<AppendedData");
@@ -36,7 +32,8 @@ class VtpParser {
       if (underscore == std::string_view::npos) throw Failure{path + ": has no appended data"};
       appended_.data = data.substr(underscore + 1);
     }
-    parse(has_appended ? data.substr(0, close + 1) : data, !has_appended);
+    read_xml(path, has_appended ? data.substr(0, close + 1) : data, !has_appended, *this);
+    if (unknown_compressor_) throw Failure{path + ": is compressed by other means than zlib"};
     if (!is_poly_data_) throw Failure{path + ": is not a PolyData file of VTK"};
   }
 
@@ -44,74 +41,45 @@ class VtpParser {
   const VtpEncoding& encoding() const { return encoding_; }
   const VtpAppended& appended() const { return appended_; }
 
- private:
-  using Attributes = const char**;  // name, value, name, value, ..., null
-
-  static std::string attribute(Attributes attributes, const char* name) {
-    for (; *attributes != nullptr; attributes += 2) {
-      if (std::strcmp(*attributes, name) == 0) return attributes[1];
-    }
-    return {};
-  }
-
-  void parse(std::string_view xml, bool is_all) {
-    if (xml.size() > size_t{std::numeric_limits<int>::max()}) {
-      throw Failure{path_ + ": is too large for its encoding"};
-    }
-    const std::unique_ptr<XML_ParserStruct, void (*)(XML_Parser)> parser(XML_ParserCreate(nullptr),
-                                                                         XML_ParserFree);
-    if (parser == nullptr) throw Failure{path_ + ": not enough memory to read it"};
-    XML_SetUserData(parser.get(), this);
-    XML_SetElementHandler(
-        parser.get(),
-        [](void* self, const char* name, Attributes attributes) {
-          static_cast<VtpParser*>(self)->start(name, attributes);
-        },
-        [](void* self, const char* name) { static_cast<VtpParser*>(self)->end(name); });
-    XML_SetCharacterDataHandler(parser.get(), [](void* self, const char* part, int size) {
-      VtpArray* array = static_cast<VtpParser*>(self)->array_;
-      if (array != nullptr) array->text.append(part, static_cast<size_t>(size));
-    });
-    if (XML_Parse(parser.get(), xml.data(), static_cast<int>(xml.size()), is_all ? 1 : 0) !=
-        XML_STATUS_OK) {
-      throw Failure{path_ + ": line " + std::to_string(XML_GetCurrentLineNumber(parser.get())) +
-                    ": " + XML_ErrorString(XML_GetErrorCode(parser.get()))};
-    }
-    if (unknown_compressor_) throw Failure{path_ + ": is compressed by other means than zlib"};
-  }
-
-  // Called by expat: nothing may be thrown through it.
-  void start(const std::string& name, Attributes attributes) {
+  void start(const std::string& name, Attributes attributes) override {
+    array_ = nullptr;  // of a piece that the next one may move
     if (name == "VTKFile") {
-      is_poly_data_ = attribute(attributes, "type") == "PolyData";
-      encoding_.big_endian = attribute(attributes, "byte_order") == "BigEndian";
-      encoding_.wide_header = attribute(attributes, "header_type") == "UInt64";
-      const std::string compressor = attribute(attributes, "compressor");
+      is_poly_data_ = xml_attribute(attributes, "type") == "PolyData";
+      encoding_.big_endian = xml_attribute(attributes, "byte_order") == "BigEndian";
+      encoding_.wide_header = xml_attribute(attributes, "header_type") == "UInt64";
+      const std::string compressor = xml_attribute(attributes, "compressor");
       encoding_.compressed = !compressor.empty();
       unknown_compressor_ = encoding_.compressed && compressor != "vtkZLibDataCompressor";
     } else if (name == "Piece") {
+      if (pieces_.size() == kMostPieces) throw Failure{path_ + ": has too many pieces"};
       pieces_.emplace_back();
     } else if (name == "AppendedData") {
-      appended_.base64 = attribute(attributes, "encoding") == "base64";
+      appended_.base64 = xml_attribute(attributes, "encoding") == "base64";
     } else if (name == "DataArray") {
       start_array(attributes);
     } else {
       section_ = name;
-      if (name == "PointData") normals_name_ = attribute(attributes, "Normals");
+      if (name == "PointData") normals_name_ = xml_attribute(attributes, "Normals");
     }
   }
-  void end(const std::string& name) {
+  void end(const std::string& name) override {
     array_ = nullptr;
     if (name == section_) section_.clear();
   }
+  void text(std::string_view part) override {
+    if (array_ != nullptr) array_->text += part;
+  }
+
+ private:
   void start_array(Attributes attributes) {
-    const std::string name = attribute(attributes, "Name");
+    const std::string name = xml_attribute(attributes, "Name");
     array_ = pieces_.empty() ? nullptr : wanted(pieces_.back(), name);
     if (array_ == nullptr) return;
-    *array_ = {name, attribute(attributes, "type"), attribute(attributes, "format"), 1, {}, 0};
-    const std::string components = attribute(attributes, "NumberOfComponents");
+    *array_ = {name, xml_attribute(attributes, "type"), xml_attribute(attributes, "format"), 1, {},
+               0};
+    const std::string components = xml_attribute(attributes, "NumberOfComponents");
     if (components == "3") array_->components = 3;
-    array_->offset = std::strtoull(attribute(attributes, "offset").c_str(), nullptr, 10);
+    array_->offset = std::strtoull(xml_attribute(attributes, "offset").c_str(), nullptr, 10);
   }
   VtpArray* wanted(Piece& piece, const std::string& name) const {
     if (section_ == "Points") return &piece.points;
@@ -123,6 +91,8 @@ class VtpParser {
     if (name == "connectivity") return &cells->connectivity;
     return name == "offsets" ? &cells->offsets : nullptr;
   }
+
+  static constexpr size_t kMostPieces = 65536;  // each takes a hundred times its tag
 
   const std::string& path_;
   VtpEncoding encoding_;
@@ -136,7 +106,7 @@ class VtpParser {
 class VtpReader {
  public:
   VtpReader(const std::string& path, std::string_view data)
-      : path_(path), file_(path, data), mesh_(path) {}
+      : path_(path), file_(path, data), left_(data.size()), mesh_(path) {}
 
   TriangleMesh read() {
     for (const Piece& piece : file_.pieces()) {
@@ -163,7 +133,7 @@ class VtpReader {
  private:
   std::vector<double> values(const VtpArray& array) {
     if (array.format.empty()) return {};
-    return vtp_values(path_, file_.encoding(), file_.appended(), array);
+    return vtp_values(path_, file_.encoding(), file_.appended(), array, left_);
   }
   template <typename Visit>
   void for_each_cell(const Cells& cells, int64_t base, int64_t end, const Visit& visit) {
@@ -190,6 +160,7 @@ class VtpReader {
 
   const std::string& path_;
   VtpParser file_;
+  uint64_t left_;  // see vtp_values()
   MeshBuilder mesh_;
 };
 

@@ -7,7 +7,9 @@
 #include <limits>
 
 #include "tools/mesh_io_text.h"
+#include "tools/printable.h"
 #include "tools/volume_io.h"
+#include "tools/volume_io_memory.h"
 
 namespace plc::tools {
 namespace {
@@ -52,8 +54,8 @@ std::string decode_base64(std::string_view text, size_t wanted) {
 class ArrayReader {
  public:
   ArrayReader(const std::string& path, const VtpEncoding& encoding, const VtpAppended& appended,
-              const VtpArray& array)
-      : path_(path), encoding_(encoding), array_(array) {
+              const VtpArray& array, uint64_t& left)
+      : path_(path), encoding_(encoding), array_(array), left_(left) {
     if (array.format != "appended") {
       source_ = array.text;
       base64_ = true;
@@ -64,9 +66,12 @@ class ArrayReader {
     base64_ = appended.base64;
   }
 
-  std::string bytes() { return encoding_.compressed ? decompressed() : plain(); }
+  // value_size: of the values that are to be made doubles of.
+  std::string bytes(size_t value_size) {
+    return encoding_.compressed ? decompressed(value_size) : plain();
+  }
   [[noreturn]] void fail(const std::string& message) const {
-    throw Failure{path_ + ": its array " + array_.name.substr(0, 40) + " " + message};
+    throw Failure{path_ + ": its array " + printable(array_.name) + " " + message};
   }
 
  private:
@@ -90,15 +95,21 @@ class ArrayReader {
     if (length > source_.size()) fail("is truncated");
   }
 
-  std::string plain() const {
+  void take(uint64_t size) {
+    if (size > left_) fail("is made of bytes of other arrays");
+    left_ -= size;
+  }
+
+  std::string plain() {
     const uint64_t length = word(first(word_size()), 0);
     check_length(length);
+    take(length);
     return first(word_size() + length).substr(word_size());
   }
 
   // Header: blocks, bytes of a block, bytes of the last one (0: a whole one), then the compressed
   // bytes of each block; then the blocks.
-  std::string decompressed() const {
+  std::string decompressed(size_t value_size) {
     const uint64_t blocks = word(first(word_size()), 0);
     if (blocks == 0) return {};
     check_length(blocks);
@@ -118,7 +129,10 @@ class ArrayReader {
       fail("has lengths that contradict each other");
     }
     const std::string data = first(header_size + packed);
-    std::string out((blocks - 1) * block_size + last_size, '\0');
+    take(header_size + packed);
+    const uint64_t total = (blocks - 1) * block_size + last_size;
+    require_memory(path_, total + total / value_size * sizeof(double));
+    std::string out(total, '\0');
     const char* in = data.data() + header_size;
     for (uint64_t i = 0; i < blocks; ++i) {
       const uint64_t wanted = i + 1 < blocks ? block_size : last_size;
@@ -137,6 +151,7 @@ class ArrayReader {
   const std::string& path_;
   const VtpEncoding& encoding_;
   const VtpArray& array_;
+  uint64_t& left_;
   std::string_view source_;
   bool base64_ = false;
 };
@@ -153,27 +168,29 @@ std::vector<double> unpack(const std::string& bytes, bool big) {
 }  // namespace
 
 std::vector<double> vtp_values(const std::string& path, const VtpEncoding& encoding,
-                               const VtpAppended& appended, const VtpArray& array) {
+                               const VtpAppended& appended, const VtpArray& array, uint64_t& left) {
   if (array.format == "ascii") {
     std::vector<double> values;
     TextReader text(path, array.text);
     while (!text.at_end()) values.push_back(text.real());
     return values;
   }
-  ArrayReader reader(path, encoding, appended, array);
+  ArrayReader reader(path, encoding, appended, array, left);
   if (array.format != "binary" && array.format != "appended") reader.fail("has an unknown format");
   using Unpack = std::vector<double> (*)(const std::string&, bool);
   struct Type {
     std::string_view name;
+    size_t size;
     Unpack unpack;
   };
-  static constexpr Type kTypes[] = {{"Float32", unpack<float>},   {"Float64", unpack<double>},
-                                    {"Int64", unpack<int64_t>},   {"Int32", unpack<int32_t>},
-                                    {"UInt64", unpack<uint64_t>}, {"UInt32", unpack<uint32_t>},
-                                    {"Int16", unpack<int16_t>},   {"UInt16", unpack<uint16_t>},
-                                    {"Int8", unpack<int8_t>},     {"UInt8", unpack<uint8_t>}};
+  static constexpr Type kTypes[] = {
+      {"Float32", 4, unpack<float>},   {"Float64", 8, unpack<double>},
+      {"Int64", 8, unpack<int64_t>},   {"Int32", 4, unpack<int32_t>},
+      {"UInt64", 8, unpack<uint64_t>}, {"UInt32", 4, unpack<uint32_t>},
+      {"Int16", 2, unpack<int16_t>},   {"UInt16", 2, unpack<uint16_t>},
+      {"Int8", 1, unpack<int8_t>},     {"UInt8", 1, unpack<uint8_t>}};
   for (const Type& type : kTypes) {
-    if (type.name == array.type) return type.unpack(reader.bytes(), encoding.big_endian);
+    if (type.name == array.type) return type.unpack(reader.bytes(type.size), encoding.big_endian);
   }
   reader.fail("has an unknown type");
 }

@@ -1,5 +1,6 @@
 // The data arrays of VTK's XML files.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,8 +27,10 @@ struct VtpAppended {
   bool base64 = false;
 };
 
-// The values of an array, whatever its type and encoding. Throws Failure.
+// The values of an array, whatever its type and encoding. `left`: how many bytes of the file arrays
+// may still be made of, counted down: a thousand arrays that share their bytes would make much of
+// little. Throws Failure.
 std::vector<double> vtp_values(const std::string& path, const VtpEncoding& encoding,
-                               const VtpAppended& appended, const VtpArray& array);
+                               const VtpAppended& appended, const VtpArray& array, uint64_t& left);
 
 }  // namespace plc::tools

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian packages that the named purposes need:
-#   tools/setup.sh [build] [test] [demo] [lint] [compilers] [perf] [peers]
+#   tools/setup.sh [build] [test] [demo] [lint] [compilers] [perf] [peers] [fuzz]
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
 
@@ -11,6 +11,7 @@ demo=(invesalius-examples)
 lint=(clang-format clang-tidy)
 compilers=(clang)
 perf=(jq gnuplot-nox invesalius-examples libbenchmark-dev)
+fuzz=(clang libclang-rt-14-dev)  # libFuzzer and the sanitizers
 peers=(libvtk9-dev libcgal-dev)  # programs that perf/run compares with
 
 wanted=()
@@ -22,8 +23,9 @@ for purpose in "$@"; do
     lint) wanted+=("${lint[@]}") ;;
     compilers) wanted+=("${compilers[@]}") ;;
     perf) wanted+=("${perf[@]}") ;;
+    fuzz) wanted+=("${fuzz[@]}") ;;
     peers) wanted+=("${peers[@]}") ;;
-    *) echo "setup.sh: unknown purpose $purpose: build, test, demo, lint, compilers, perf or peers" >&2; exit 2 ;;
+    *) echo "setup.sh: unknown purpose $purpose: build, test, demo, lint, compilers, perf, peers or fuzz" >&2; exit 2 ;;
   esac
 done
 

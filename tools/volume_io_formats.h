@@ -32,8 +32,8 @@ std::vector<std::byte> allocate_voxels(const std::string& path, const ItkHeader&
 // 3-D, or where its spacing or direction is no geometry.
 ItkHeader checked_header(const std::string& path, ItkHeader header);
 
-// Failure unless the file holds what its header says; ITK does not look in all formats.
+// Failure unless the file holds what its header says, or can hold it where it is packed: before
+// memory is taken for it, and because ITK does not look in all formats.
 void check_file_size(const std::string& path, ItkFormat format, const ItkHeader& header);
-void check_tiff_size(const std::string& path);
 
 }  // namespace plc::tools

@@ -1,5 +1,5 @@
-// Does a file hold the voxels its header speaks of? ITK's readers of NIfTI and MetaImage leave what
-// is missing as it happens to be, its reader of TIFF drops the pages it does not find.
+#include "tools/volume_io_size.h"
+
 #include <zlib.h>
 
 #include <algorithm>
@@ -8,44 +8,19 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <map>
+#include <limits>
 #include <memory>
 #include <system_error>
 
 #include "tools/mesh_io_text.h"
-#include "tools/volume_io_formats.h"
-#include "tools/volume_io_memory.h"
+#include "tools/printable.h"
 
 namespace plc::tools {
 namespace {
 
-uint64_t voxels_of(const ItkHeader& header) {
-  uint64_t count = 1;
-  for (const int64_t dim : header.dims) count *= static_cast<uint64_t>(dim);
-  return count;
-}
-
 [[noreturn]] void too_short(const std::string& path, uint64_t found, uint64_t needed) {
   throw Failure{path + ": is truncated (holds " + std::to_string(found) +
                 " bytes of voxels, its header asks for " + std::to_string(needed) + ")"};
-}
-
-void require_bytes(const std::string& path, uint64_t found, uint64_t needed) {
-  if (found < needed) too_short(path, found, needed);
-}
-
-uint64_t size_of(const std::string& path) {
-  std::error_code error;
-  const uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) throw Failure{path + ": cannot be read: " + error.message()};
-  return size;
-}
-
-// No stream of zlib unpacks to more than 1032 times its size: what claims more is not unpacked.
-void require_ratio(const std::string& path, uint64_t packed, uint64_t needed) {
-  constexpr uint64_t kMaxRatio = 1040;
-  if (packed < needed / kMaxRatio) too_short(path, packed, needed);
 }
 
 struct NiftiLayout {
@@ -55,22 +30,44 @@ struct NiftiLayout {
   bool big_endian = false;
 };
 
+constexpr int16_t kNiftiF32 = 16;
+constexpr int16_t kNiftiF64 = 64;
+
+// As its library has it: what the header says of bits per voxel is not used. 0: no scalar.
+uint64_t nifti_voxel_bytes(int16_t type) {
+  switch (type) {
+    case 2:
+    case 256:
+      return 1;
+    case 4:
+    case 512:
+      return 2;
+    case 8:
+    case kNiftiF32:
+    case 768:
+      return 4;
+    case kNiftiF64:
+    case 1024:
+    case 1280:
+      return 8;
+    default:
+      return 0;
+  }
+}
+
 NiftiLayout nifti_layout(const std::string& path, const std::array<char, 544>& bytes) {
   constexpr int32_t kSize1 = 348;
   constexpr int32_t kSize2 = 540;
-  constexpr int16_t kFloat32 = 16;
-  constexpr int16_t kFloat64 = 64;
   const char* at = bytes.data();
   for (const bool big : {false, true}) {
     const auto size = load_value<int32_t>(at, big);
     if (size != kSize1 && size != kSize2) continue;
-    const char* type_at = at + (size == kSize1 ? 70 : 12);  // bitpix follows
     const double offset = size == kSize1 ? static_cast<double>(load_value<float>(at + 108, big))
                                          : static_cast<double>(load_value<int64_t>(at + 168, big));
-    const auto type = load_value<int16_t>(type_at, big);
-    if (!(offset >= 0 && offset < 1e15)) break;
-    return {static_cast<uint64_t>(offset), load_value<uint16_t>(type_at + 2, big) / 8U,
-            type == kFloat32 || type == kFloat64, big};
+    const auto type = load_value<int16_t>(at + (size == kSize1 ? 70 : 12), big);
+    const uint64_t voxel = nifti_voxel_bytes(type);
+    if (!(offset >= 0 && offset < 1e15) || voxel == 0) break;
+    return {static_cast<uint64_t>(offset), voxel, type == kNiftiF32 || type == kNiftiF64, big};
   }
   throw Failure{path + ": is not a readable NIfTI file"};
 }
@@ -95,13 +92,13 @@ void check_nifti(const std::string& path, const ItkHeader& header) {
     throw Failure{path + ": is truncated (its header is not whole)"};
   }
   const NiftiLayout layout = nifti_layout(path, first);
-  const uint64_t needed = voxels_of(header) * layout.voxel_bytes;
+  const uint64_t needed = product_of(header.dims, layout.voxel_bytes);
   const uint64_t size = size_of(path);
   if (gzdirect(file.get()) != 0) {
     require_bytes(path, size - std::min(size, layout.offset), needed);
     if (!layout.is_float) return;
   } else {
-    require_ratio(path, size, needed);
+    require_ratio(path, size, needed, kZlibRatio);
   }
   if (gzseek(file.get(), static_cast<z_off_t>(layout.offset), SEEK_SET) < 0) {
     too_short(path, 0, needed);
@@ -128,9 +125,48 @@ void check_nifti(const std::string& path, const ItkHeader& header) {
   }
 }
 
-// Unpacks the rest of the file without keeping it.
+}  // namespace
+
+uint64_t times(uint64_t a, uint64_t b) {
+  constexpr uint64_t kMost = std::numeric_limits<uint64_t>::max();
+  return b != 0 && a > kMost / b ? kMost : a * b;
+}
+
+uint64_t product_of(const std::vector<int64_t>& dims, uint64_t bytes) {
+  for (const int64_t dim : dims) bytes = times(bytes, static_cast<uint64_t>(dim));
+  return bytes;
+}
+
+uint64_t voxel_bytes(const ItkHeader& header) {
+  return product_of(header.dims, component_size(header.component));
+}
+
+uint64_t size_of(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) throw Failure{path + ": cannot be read"};
+  const uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) throw Failure{path + ": cannot be read: " + error.message()};
+  return size;
+}
+
+std::string beside(const std::string& path, const std::string& name) {
+  constexpr size_t kLongest = 255;
+  if (name.empty() || name.size() > kLongest || !is_printable(name)) {
+    throw Failure{path + ": names a file \"" + printable(name) + "\", which cannot be"};
+  }
+  return (std::filesystem::path(path).parent_path() / name).string();
+}
+
+void require_bytes(const std::string& path, uint64_t found, uint64_t needed) {
+  if (found < needed) too_short(path, found, needed);
+}
+
+void require_ratio(const std::string& path, uint64_t packed, uint64_t needed, uint64_t ratio) {
+  if (packed < needed / ratio) too_short(path, packed, needed);
+}
+
 void check_zlib(const std::string& path, std::ifstream& file, uint64_t packed, uint64_t needed) {
-  require_ratio(path, packed, needed);
+  require_ratio(path, packed, needed, kZlibRatio);
   z_stream stream{};
   constexpr int kZlibOrGzip = 15 + 32;
   if (inflateInit2(&stream, kZlibOrGzip) != Z_OK) throw Failure{path + ": not enough memory"};
@@ -159,74 +195,18 @@ void check_zlib(const std::string& path, std::ifstream& file, uint64_t packed, u
   require_bytes(path, unpacked, needed);
 }
 
-// The lines "Key = value" of a MetaImage up to ElementDataFile, which ends the header.
-std::map<std::string, std::string> meta_fields(std::ifstream& file) {
-  const auto trimmed = [](const std::string& text) {
-    const char* const space = " \t\r";
-    const size_t begin = text.find_first_not_of(space);
-    if (begin == std::string::npos) return std::string();
-    return text.substr(begin, text.find_last_not_of(space) - begin + 1);
-  };
-  constexpr int kMaxLines = 10000;
-  std::map<std::string, std::string> fields;
-  std::string line;
-  for (int i = 0; i < kMaxLines && std::getline(file, line); ++i) {
-    const size_t split = line.find_first_of("=:");
-    if (split == std::string::npos) continue;
-    const std::string key = trimmed(line.substr(0, split));
-    fields[key] = trimmed(line.substr(split + 1));
-    if (key == "ElementDataFile") break;
-  }
-  return fields;
-}
-
-bool is_true(const std::string& value) {
-  return !value.empty() && (value[0] == 'T' || value[0] == 't' || value[0] == '1');
-}
-
-void check_meta(const std::string& path, const ItkHeader& header) {
-  std::ifstream file(path, std::ios::binary);
-  std::map<std::string, std::string> fields = meta_fields(file);
-  const std::string data_name = fields["ElementDataFile"];
-  if (data_name.empty()) throw Failure{path + ": is truncated (its header has no end)"};
-  const bool local = data_name == "LOCAL" || data_name == "Local" || data_name == "local";
-  // One file per slice, or text: ITK's own affair.
-  if (data_name.rfind("LIST", 0) == 0 || data_name.find('%') != std::string::npos) return;
-  if (fields.count("BinaryData") != 0 && !is_true(fields["BinaryData"])) return;
-  std::string data_path = path;
-  if (!local) {
-    data_path = (std::filesystem::path(path).parent_path() / data_name).string();
-    file.close();
-    file.open(data_path, std::ios::binary);
-  }
-  if (!file) throw Failure{path + ": its data file " + data_path + " cannot be read"};
-  const auto begin = static_cast<uint64_t>(local ? static_cast<int64_t>(file.tellg()) : 0);
-  const uint64_t rest = size_of(data_path) - begin;
-  const uint64_t needed = voxels_of(header) * component_size(header.component);
-  if (!is_true(fields["CompressedData"])) {
-    require_bytes(data_path, rest, needed);
-    return;
-  }
-  if (local && fields["CompressedDataSize"].empty()) {
-    throw Failure{path + ": its header does not have CompressedDataSize"};
-  }
-  check_zlib(data_path, file, rest, needed);
-}
-
-}  // namespace
-
 void check_file_size(const std::string& path, ItkFormat format, const ItkHeader& header) {
   switch (format) {
     case ItkFormat::kNifti:
       return check_nifti(path, header);
     case ItkFormat::kMeta:
-      return check_meta(path, header);
+      return check_meta_size(path, header);
     case ItkFormat::kTiff:
-      return check_tiff_size(path);
+      return check_tiff_size(path, header);
     case ItkFormat::kDicom:
       return check_dicom_size(path);
     case ItkFormat::kNrrd:
-      return;  // its reader notices
+      return check_nrrd_size(path, header);
   }
 }
 

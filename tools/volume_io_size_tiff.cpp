@@ -1,23 +1,22 @@
-// Walks the pages of a TIFF file: every directory and every strip or tile must be in the file.
+// Walks the pages of a TIFF file: every directory and every strip or tile must be in the file, and
+// they must be able to hold the voxels.
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
-#include <system_error>
+#include <limits>
 
 #include "tools/mesh_io_text.h"
-#include "tools/volume_io_formats.h"
+#include "tools/volume_io_size.h"
 
 namespace plc::tools {
 namespace {
 
 class TiffWalker {
  public:
-  explicit TiffWalker(const std::string& path) : path_(path), file_(path, std::ios::binary) {
-    std::error_code error;
-    size_ = std::filesystem::file_size(path, error);
-  }
+  explicit TiffWalker(const std::string& path)
+      : path_(path), file_(path, std::ios::binary), size_(size_of(path)), left_(size_) {}
 
-  void walk() {
+  // Of voxels at most, in bytes.
+  uint64_t walk() {
     char magic[4];
     read(0, magic, sizeof magic);
     big_endian_ = magic[0] == 'M';
@@ -25,6 +24,7 @@ class TiffWalker {
     uint64_t at = wide_ ? number<uint64_t>(8) : number<uint32_t>(4);
     // Directories that lead back to themselves end at the number the file has room for.
     for (uint64_t pages = size_ / 6; at != 0 && pages > 0; --pages) at = directory(at);
+    return capacity_;
   }
 
  private:
@@ -53,8 +53,27 @@ class TiffWalker {
     if (field.size == 2) return number<uint16_t>(at);
     return field.size == 4 ? number<uint32_t>(at) : number<uint64_t>(at);
   }
+  // What is read of directories is no more than the file: where they overlap they lead in circles.
+  void step(uint64_t size) {
+    if (size > left_) throw Failure{path_ + ": is damaged (its pages overlap)"};
+    left_ -= size;
+  }
+  // Bytes of voxels that a byte may stand for: 8 where it is 8 of one bit; the best that packings
+  // reach, which for some is no bound but what a blank page comes to.
+  static uint64_t ratio_of(uint64_t compression) {
+    constexpr uint64_t kNone = 1;
+    constexpr uint64_t kLzw = 5;
+    constexpr uint64_t kDeflate = 8;
+    constexpr uint64_t kOldDeflate = 32946;
+    constexpr uint64_t kPackBits = 32773;
+    if (compression == kNone) return 8;
+    if (compression == kPackBits) return 8 * 64;
+    if (compression == kDeflate || compression == kOldDeflate) return 8 * kZlibRatio;
+    return compression == kLzw ? 8 * 4096 : 65536;
+  }
   // The offset of the next directory.
   uint64_t directory(uint64_t at) {
+    constexpr uint16_t kCompression = 259;
     constexpr uint16_t kStripOffsets = 273;
     constexpr uint16_t kStripBytes = 279;
     constexpr uint16_t kTileOffsets = 324;
@@ -63,20 +82,36 @@ class TiffWalker {
     at += wide_ ? 8 : 2;
     const uint64_t entry_size = wide_ ? 20 : 12;
     if (entries > size_ / entry_size) truncated();
+    step(entries * entry_size);
+    uint64_t compression = 1;
     Field offsets;
     Field bytes;
     for (uint64_t i = 0; i < entries; ++i, at += entry_size) {
       const auto tag = number<uint16_t>(at);
+      if (tag == kCompression) compression = value(field(at), 0);
       if (tag == kStripOffsets || tag == kTileOffsets) offsets = field(at);
       if (tag == kStripBytes || tag == kTileBytes) bytes = field(at);
     }
-    const uint64_t pieces = std::min(offsets.count, bytes.count);
+    check_pieces(offsets, bytes, ratio_of(compression));
+    return wide_ ? number<uint64_t>(at) : number<uint32_t>(at);
+  }
+  void check_pieces(const Field& offsets, const Field& bytes, uint64_t ratio) {
+    // One strip may go without its size: to the end of the file.
+    const uint64_t pieces = bytes.count == 0 ? std::min<uint64_t>(offsets.count, 1)
+                                             : std::min(offsets.count, bytes.count);
     if (pieces > size_) truncated();
+    step(pieces);
     for (uint64_t i = 0; i < pieces; ++i) {
       const uint64_t begin = value(offsets, i);
-      if (begin > size_ || size_ - begin < value(bytes, i)) truncated();
+      if (begin > size_) truncated();
+      const uint64_t size = bytes.count == 0 ? size_ - begin : value(bytes, i);
+      if (size_ - begin < size) truncated();
+      // Pieces that share their bytes count once each, up to the size of the file.
+      const uint64_t counted = std::min(size, size_ - std::min(size_, packed_));
+      packed_ += counted;
+      const uint64_t room = std::numeric_limits<uint64_t>::max() - capacity_;
+      capacity_ += std::min(times(counted, ratio), room);
     }
-    return wide_ ? number<uint64_t>(at) : number<uint32_t>(at);
   }
   Field field(uint64_t entry) {
     Field field;
@@ -91,14 +126,17 @@ class TiffWalker {
 
   const std::string& path_;
   std::ifstream file_;
-  uint64_t size_ = 0;
+  uint64_t size_;
+  uint64_t left_;          // of the file, for directories
+  uint64_t packed_ = 0;    // bytes of all strips and tiles
+  uint64_t capacity_ = 0;  // bytes of voxels they may stand for
   bool big_endian_ = false, wide_ = false;
 };
 
 }  // namespace
 
-void check_tiff_size(const std::string& path) {
-  TiffWalker(path).walk();
+void check_tiff_size(const std::string& path, const ItkHeader& header) {
+  require_bytes(path, TiffWalker(path).walk(), voxel_bytes(header));
 }
 
 }  // namespace plc::tools
