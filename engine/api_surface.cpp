@@ -34,13 +34,13 @@ Status check_vertices(const plc_surface* surface, plc_space space, const char* n
   return check_room(name, data, capacity, plc_surface_vertex_count(surface));
 }
 
-void write_positions(const plc_surface& surface, plc_space space, float* xyz) {
-  const Affine a = affine_of(surface, space);
+template <typename Real>
+void write_positions(const plc_surface& surface, const Affine& a, Real* xyz) {
   for (uint32_t v = 0; v < surface.mesh.slots(); ++v) {
     const Packed& p = surface.mesh.packed[v];
     const auto at =
         a.point({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
-    for (const double x : at) *xyz++ = static_cast<float>(x);
+    for (const double x : at) *xyz++ = static_cast<Real>(x);
   }
 }
 
@@ -59,7 +59,7 @@ void write_normals(const plc_surface& surface, plc_space space, float* xyz) {
   const Mesh& mesh = surface.mesh;
   const auto n = static_cast<size_t>(mesh.slots());
   Buffer<float> p(3 * n);
-  write_positions(surface, space, p.data());
+  write_positions(surface, affine_of(surface, space), p.data());
   const double sign = affine_of(surface, space).mirrors() ? -1 : 1;
   const auto at = [&](uint32_t v) {
     const size_t i = static_cast<size_t>(v) * 3;
@@ -81,7 +81,9 @@ void write_normals(const plc_surface& surface, plc_space space, float* xyz) {
   }
 }
 
-// A copy of the surface as functions of any mesh take it.
+// A copy of the surface as functions of any mesh take it: in the units and axes of the space, but
+// not rounded to floats in it, which would make what is small beside its distance from the origin
+// meet, and about the image's first voxel instead of the origin, for the same reason.
 struct PlainMesh {
   Buffer<double> xyz;
   Buffer<uint32_t> abc;
@@ -91,10 +93,10 @@ PlainMesh plain_mesh(const plc_surface& surface, plc_space space) {
   PlainMesh mesh;
   mesh.vertices = static_cast<size_t>(plc_surface_vertex_count(&surface));
   mesh.faces = static_cast<size_t>(plc_surface_face_count(&surface));
-  Buffer<float> xyz(3 * mesh.vertices);
-  write_positions(surface, space, xyz.data());
-  mesh.xyz.resize_uninitialized(xyz.size());
-  std::copy(xyz.begin(), xyz.end(), mesh.xyz.begin());
+  Affine in_space = affine_of(surface, space);
+  in_space.t = {};
+  mesh.xyz.resize_uninitialized(3 * mesh.vertices);
+  write_positions(surface, in_space, mesh.xyz.data());
   mesh.abc.resize_uninitialized(3 * mesh.faces);
   write_faces(surface, space, mesh.abc.data());
   return mesh;
@@ -188,7 +190,7 @@ plc_status plc_surface_positions(plc_context* context, const plc_surface* surfac
                                  float* xyz, int64_t capacity) {
   return plc::guarded(context, [&]() -> Status {
     if (Status s = plc::check_vertices(surface, space, "xyz", xyz, capacity); !s.ok()) return s;
-    plc::write_positions(*surface, space, xyz);
+    plc::write_positions(*surface, plc::affine_of(*surface, space), xyz);
     return {};
   });
 }

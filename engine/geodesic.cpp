@@ -30,6 +30,7 @@ struct Window {
   double x, depth;      // the unfolded vertex is at (x, -depth)
   double sigma;         // the distance of that vertex
   uint32_t corner, by;  // by: that vertex
+  uint32_t faces;       // that the paths have come through since they left it
 };
 
 // Squares neither over- nor underflow within the coordinates that are allowed.
@@ -50,7 +51,7 @@ struct Frame {
 
 // The window as it looks in the mirror that swaps the ends of its edge.
 Window mirrored(const Window& w, double length) {
-  return {length - w.high, length - w.low, length - w.x, w.depth, w.sigma, w.corner, w.by};
+  return {length - w.high, length - w.low, length - w.x, w.depth, w.sigma, w.corner, w.by, w.faces};
 }
 Frame mirrored(const Frame& f) {
   return {f.length, f.length - f.x, f.y};
@@ -62,6 +63,7 @@ class Propagation {
               const Executor& executor, double* distance)
       : xyz_(xyz),
         abc_(abc),
+        face_count_(face_count),
         distance_(distance),
         corners_(abc, face_count, vertex_count),
         edges_(abc, face_count, vertex_count, executor),
@@ -124,7 +126,7 @@ class Propagation {
       reach(abc_[next], sigma + edge_length(c, next));
       reach(abc_[previous], sigma + edge_length(c, previous));
       const Frame f = frame_of(c);
-      if (f.length > 0) emit({0, f.length, f.x, f.y, sigma, c, vertex}, f.length);
+      if (f.length > 0) emit({0, f.length, f.x, f.y, sigma, c, vertex, 1}, f.length);
     }
   }
 
@@ -172,6 +174,9 @@ class Propagation {
     if (w.sigma > distance_[w.by]) return;  // a shorter path to that vertex was found since
     const Frame f = frame_of(w.corner);
     if (is_beaten(w, f.length)) return;
+    // A shortest path comes through no face twice. Where lengths differ so much that the short ones
+    // are lost in sums, nothing else ends a path that goes round and round a vertex.
+    if (w.faces >= face_count_) return;
     // Where the straight path to the apex crosses the edge, and the nearest place of the window.
     const double apex = w.x + (f.x - w.x) * (w.depth / (f.y + w.depth));
     const double through = std::clamp(apex, w.low, w.high);
@@ -224,12 +229,14 @@ class Propagation {
                      std::max(0.0, (w.depth * f.x + w.x * f.y) / edge),
                      w.sigma,
                      far,
-                     w.by};
+                     w.by,
+                     w.faces + 1};
     emit(in_mirror ? out : mirrored(out, edge), edge);
   }
 
   const double* xyz_;
   const uint32_t* abc_;
+  size_t face_count_;
   double* distance_;
   VertexCorners corners_;
   EdgeRings edges_;

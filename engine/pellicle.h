@@ -525,7 +525,8 @@ typedef struct plc_measures {
 } plc_measures;
 PLC_API plc_status plc_surface_measure(plc_context* context, const plc_surface* surface,
                                        plc_space space, plc_measures* measures);
-/* See plc_check_mesh; in mm of patient space. */
+/* See plc_check_mesh; in mm. Of the surface as the engine holds it: coordinates that are written in
+ * floats of a space far from its origin may tell less. */
 typedef struct plc_check plc_check;
 PLC_API plc_status plc_surface_check(plc_context* context, const plc_surface* surface,
                                      plc_check* check);

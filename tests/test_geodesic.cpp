@@ -212,6 +212,37 @@ TEST_CASE("distances are the same both ways and obey the triangle inequality", "
   }
 }
 
+TEST_CASE("distances that swallow others went round and round a far vertex", "[geodesic]") {
+  // Vertex 10 is 1e43 away from the others: what is added to a path by way of it is lost.
+  Soup m;
+  m.xyz = {2.5,      0,         0,
+           2,        0,         0.5,
+           1.5,      0,         6.1,
+           2,        0,         -0.5,
+           0.77,     2.38,      0,
+           0.62,     1.9,       0.5,
+           0.46,     1.43,      0,
+           0.62,     1.9,       -0.5,
+           -2.02,    1.47,      0,
+           -1.62,    1.18,      0.5,
+           -1.21353, 0.881678,  -1.57771e+43,
+           11.0271,  1.17557,   -0.5,
+           -2.02254, -1.46946,  0,
+           -1.61803, -1.17557,  1.5,
+           -1.21353, -0.881678, 6.12323e-17,
+           -1.61803, -1.17557,  -0.5,
+           0.772542, -2.37764,  0,
+           0.618034, -1.90211,  0.5,
+           0.463525, -1.42658,  0,
+           0.618034, -1.90211,  -0.5};
+  m.abc = {5, 9, 10, 5, 10, 6, 6, 10, 11, 9, 14, 10, 10, 14, 15, 10, 15, 11, 15, 16, 12, 19, 0, 16};
+  for (uint32_t source = 0; source < 20; ++source) {
+    const std::vector<double> d = distances(m, source);
+    CHECK(d[source] == 0);
+    if (std::isfinite(d[10]) && source != 10) CHECK(d[10] == Approx(1.57771e43));
+  }
+}
+
 TEST_CASE("paths bend around a hole and a notch", "[geodesic]") {
   // 3 x 3 squares without the middle one: from corner to corner around a corner of the hole.
   Soup m = samples::sheet(3, 0);
