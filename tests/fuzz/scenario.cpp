@@ -177,7 +177,7 @@ void Scenario::choose_start(Input& input) {
       place(centre);
       const samples::Soup at = samples::moved(soup, centre[0], centre[1], centre[2], size);
       xyz_ = at.xyz;
-      abc_ = at.abc;
+      abc_.assign(at.abc.begin(), at.abc.end());
       extras_.mesh_xyz = xyz_.data();
       extras_.mesh_vertex_count = static_cast<int64_t>(xyz_.size() / 3);
       extras_.mesh_abc = abc_.data();
