@@ -56,8 +56,15 @@ soname=$(readelf -d "$library" | sed -nE 's/.*SONAME.*\[(.*)\]/\1/p')
 [ "$("$prefix/bin/pellicle" --version)" = "$version" ] || fails "pellicle --version is not $version"
 export PKG_CONFIG_PATH=$libdir/pkgconfig
 [ "$(pkg-config --modversion pellicle)" = "$version" ] || fails "pkg-config's version is not $version"
+PKG_CONFIG_LIBDIR=$libdir/pkgconfig quietly "a host of the shared library needs no other package" \
+  pkg-config --cflags --libs pellicle
 ldd "$prefix/bin/pellicle" | grep -q "=> $libdir/$soname " ||
   fails "the command does not find the library beside it"
+
+module=$libdir/pellicle/cli-modules/PellicleExtract
+"$module" --xml >"$here/module.xml" 2>&1
+"$prefix/bin/pellicle" extract --xml | cmp -s - "$here/module.xml" ||
+  fails "Slicer's module does not run the command: $(head -3 "$here/module.xml")"
 
 # ---- exports: just what the header declares, with a version
 declarations=$(grep -c '^PLC_API' "$header")

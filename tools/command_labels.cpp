@@ -307,7 +307,8 @@ void add_label_options(CLI::App& command, ExtractOptions& options) {
                       "surface is written to OUTPUT-LABEL.SUFFIX. The surfaces do not overlap, a "
                       "label inside another lies in a cavity of it, and neighbours are about half "
                       "a voxel apart. Excludes what tells the object, the start and the levels")
-          ->type_name("FILE");
+          ->type_name("FILE")
+          ->group("Files");
   command.get_option("INPUT")->required(false);
   for (const char* other :
        {"--iso", "--inside", "--level-iso", "--window", "--pad", "--feature", "--sigma", "--levels",

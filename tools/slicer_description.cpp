@@ -141,7 +141,8 @@ std::string parameter(const CLI::Option& option) {
     return "<boolean hidden=\"true\">" + common + element("default", "true") + "</boolean>";
   }
   if (name == "--iso") {  // one surface, and Slicer has no number that is not set
-    return "<double>" + common + element("default", "0") + "</double>";
+    return "<double>" + about(option, meaning.substr(0, meaning.find(". "))) +
+           element("default", "0") + "</double>";
   }
   if (option.get_items_expected_max() == 0) {
     return "<boolean>" + common + element("default", "false") + "</boolean>";
@@ -205,9 +206,11 @@ std::string description_of(const CLI::App& extract) {
 }  // namespace
 
 void add_slicer_option(CLI::App& extract) {
-  extract.add_flag_callback(
-      "--xml", [&extract] { throw CLI::CallForVersion(description_of(extract), 0); },
-      "Print the description by which 3D Slicer makes a module of this command");
+  extract
+      .add_flag_callback(
+          "--xml", [&extract] { throw CLI::CallForVersion(description_of(extract), 0); },
+          "Print the description by which 3D Slicer makes a module of this command")
+      ->group("Files");
 }
 
 void accept_slicer_names(std::vector<std::string>& arguments) {

@@ -27,11 +27,12 @@ install(FILES ${CMAKE_BINARY_DIR}/PellicleConfig.cmake ${CMAKE_BINARY_DIR}/Pelli
 # The prefix is found from where the file lies, so that an installed tree can be moved.
 file(RELATIVE_PATH prefix_from_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 string(REGEX REPLACE "/$" "" prefix_from_pc "${prefix_from_pc}")
-# A static library alone must be linked with what it needs; beside a shared one only --static does.
-set(pc_needs_requires "tbb libhwy")
-set(pc_needs_libs "-lstdc++ -lm -lpthread -ldl")
-if(TARGET pellicle_shared)
-  set(pc_private .private)
+# What the static library needs, which pkg-config --static tells, or always where it is alone. As
+# libraries: packages of pkg-config would have to be there for hosts of the shared library, too.
+set(pc_libs_private "-ltbb -lhwy -lstdc++ -lm -lpthread -ldl")
+if(NOT TARGET pellicle_shared)
+  set(pc_libs " ${pc_libs_private}")
+  set(pc_libs_private "")
 endif()
 configure_file(tools/cmake/pellicle.pc.in ${CMAKE_BINARY_DIR}/pellicle.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/pellicle.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
