@@ -58,8 +58,8 @@ export PKG_CONFIG_PATH=$libdir/pkgconfig
 [ "$(pkg-config --modversion pellicle)" = "$version" ] || fails "pkg-config's version is not $version"
 PKG_CONFIG_LIBDIR=$libdir/pkgconfig quietly "a host of the shared library needs no other package" \
   pkg-config --cflags --libs pellicle
-ldd "$prefix/bin/pellicle" | grep -q "=> $libdir/$soname " ||
-  fails "the command does not find the library beside it"
+found=$(ldd "$prefix/bin/pellicle" | awk -v name="$soname" '$1 == name {print $3}')
+[ "$(realpath "$found")" = "$library.$version" ] || fails "the command finds $found, not $library"
 
 module=$libdir/pellicle/cli-modules/PellicleExtract
 "$module" --xml >"$here/module.xml" 2>&1
