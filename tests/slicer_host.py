@@ -117,7 +117,7 @@ def run(*arguments):
 def check_run(parameters):
     """All defaults, as Slicer passes them, are those of the command; progress goes from 0 to 1."""
     image, mesh, plain = (f"{FOLDER}/{name}" for name in ("blobs.nrrd", "slicer.vtp", "plain.vtp"))
-    run(PELLICLE, "phantom", "blobs", "--size", "72", "--seed", "7", "-o", image)
+    run(PELLICLE, "phantom", "blobs", "--size", "100", "--seed", "7", "-o", image)
     done = run(*command_line(parameters, image, mesh, ISO))
     expect(done.returncode == 0, f"as Slicer runs it: {done.returncode}, {done.stderr}")
     expect(done.stderr == "", "as Slicer runs it: writes to stderr")
