@@ -59,7 +59,7 @@ class Command {
 
   int run(int argc, char** argv) {
     try {
-      std::vector<std::string> arguments(argv + 1, argv + argc);
+      std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);
       if (!arguments.empty() && arguments[0] == extract_->get_name())
         accept_slicer_names(arguments);
       std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
