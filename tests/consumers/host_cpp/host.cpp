@@ -20,8 +20,8 @@
 namespace {
 
 struct Destroy {
-  void operator()(plc_context* handle) const { plc_context_destroy(handle); }
-  void operator()(plc_surface* handle) const { plc_surface_destroy(handle); }
+  void operator()(plc_context* context) const { plc_context_destroy(context); }
+  void operator()(plc_surface* surface) const { plc_surface_destroy(surface); }
 };
 using Context = std::unique_ptr<plc_context, Destroy>;
 using Surface = std::unique_ptr<plc_surface, Destroy>;
@@ -202,12 +202,10 @@ Result extract(const Image& image, const plc_context_options& options) {
 void run() {
   const Image image;
   ThreadPool pool(3);
-  plc_context_options options;
-  plc_context_options_defaults(&options);
 
   // Each with a context of its own: oneTBB, one thread, our threads, and our threads without SIMD.
   std::array<plc_context_options, 4> ways;
-  ways.fill(options);
+  for (plc_context_options& way : ways) plc_context_options_defaults(&way);
   ways[1].threads = 1;
   ways[2].parallel_for = ways[3].parallel_for = ThreadPool::parallel_for;
   ways[2].parallel_for_user = ways[3].parallel_for_user = &pool;
