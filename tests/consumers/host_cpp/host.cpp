@@ -129,8 +129,8 @@ struct Image {
         for (int x = 0; x < kSize; ++x) {
           const double left = std::hypot(x - middle + kRadius, y - middle, z - middle);
           const double right = std::hypot(x - middle - kRadius, y - middle, z - middle);
-          const double inside = 1 - 0.5 * std::min(left, right) / kRadius;
-          voxels.push_back(static_cast<float>(std::max(0.0, inside)));
+          voxels.push_back(
+              static_cast<float>(std::max(0.0, 1 - 0.5 * std::min(left, right) / kRadius)));
         }
       }
     }
@@ -167,7 +167,6 @@ Result extract(const Image& image, const plc_context_options& options) {
     throw std::runtime_error(error);
   }
   const Context context(made);
-
   plc_parameters parameters;
   plc_parameters_defaults(&parameters);
   parameters.iso = 0.5;
@@ -189,7 +188,6 @@ Result extract(const Image& image, const plc_context_options& options) {
   must(plc_extract(context.get(), &image.image, &parameters, &extras, &extracted), context,
        "extraction");
   const Surface surface(extracted);
-
   Result result;
   result.hash = plc_surface_hash(surface.get());
   result.simd = plc_context_simd(context.get());
