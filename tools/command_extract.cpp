@@ -67,9 +67,8 @@ plc_verdict on_level(const plc_level_report* level, const plc_surface* surface, 
 
 // NULL where it was cancelled.
 SurfaceHandle evolve(plc_context* context, const plc_image& image, const ExtractJob& job,
-                     const ExtractInputs& inputs, const ExtractOptions& options, TraceFile& trace,
-                     const InterruptGuard& interrupt) {
-  ProgressLine line(options.quiet);
+                     const ExtractInputs& inputs, const ExtractOptions& options, ProgressLine& line,
+                     TraceFile& trace, const InterruptGuard& interrupt) {
   Watch watch{line, trace, interrupt};
   plc_extras extras = inputs.extras();
   extras.progress = on_progress;
@@ -126,8 +125,10 @@ class Extraction {
     ExtractOptions told = options_;
     if (job.follows) follow(index, job, told);
     interrupt_.note_first();
-    surface_ =
-        evolve(context_.get(), volume_.image, job, *inputs_, options_, traces_[index], interrupt_);
+    ProgressLine line(options_.progress);
+    surface_ = evolve(context_.get(), volume_.image, job, *inputs_, options_, line, traces_[index],
+                      interrupt_);
+    line.clear();
     if (surface_ == nullptr || interrupt_.interrupted()) {
       std::fputs("pellicle: interrupted\n", stderr);
       return kExitInterrupted;
@@ -135,7 +136,9 @@ class Extraction {
     if (plc_surface_face_count(surface_.get()) == 0) {
       throw Failure{"no surface is left: at this iso the object is smaller than the mesh resolves"};
     }
-    return write(job, traces_[index], told);
+    const int code = write(job, traces_[index], told);
+    line.done();
+    return code;
   }
 
   // Figure 24: from the last surface, on the full image, where that is nearer.
@@ -165,7 +168,7 @@ class Extraction {
       write_report(job.report, make_report(context_.get(), volume_.image, surface_.get(), measures,
                                            timings, told));
     }
-    if (!options_.quiet) {
+    if (options_.progress != Progress::kNone) {
       std::fputs(
           summary(context_.get(), volume_.image, surface_.get(), measures, timings, job.output)
               .c_str(),

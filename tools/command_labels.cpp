@@ -88,7 +88,7 @@ void shift(TriangleMesh& mesh, const std::array<int64_t, 3>& low) {
 class LabelExtraction {
  public:
   LabelExtraction(const ExtractOptions& options, InterruptGuard& interrupt)
-      : options_(options), interrupt_(interrupt), line_(options.quiet) {
+      : options_(options), interrupt_(interrupt), line_(options.progress) {
     check_mesh_path(options.output);
     if (!options.report.empty()) check_report_path(options.report);
     if (options.report == options.output)
@@ -119,6 +119,7 @@ class LabelExtraction {
     line_.clear();
     for (Piece& piece : pieces_) write(piece);
     print_total();
+    line_.done();
     return open_.empty() ? 0 : complain();
   }
 
@@ -249,7 +250,7 @@ class LabelExtraction {
       write_report(named(options_.report, name_of(piece.label)), piece.report);
     }
     const plc_measures& m = piece.measures;
-    if (!options_.quiet) {
+    if (options_.progress != Progress::kNone) {
       std::printf("label %" PRId32 "  %" PRId64 " voxels: %" PRId64 " vertices, components %" PRId64
                   ", genus %" PRId64 ", area %.1f mm2, volume %.1f mm3: %s\n",
                   piece.label.value, piece.label.voxels, m.vertices, m.components, m.genus, m.area,
@@ -258,7 +259,7 @@ class LabelExtraction {
   }
 
   void print_total() const {
-    if (options_.quiet) return;
+    if (options_.progress == Progress::kNone) return;
     std::printf("labels   %zu written, %zu left out, %zu tried again\n", pieces_.size() - left_out_,
                 left_out_, again_);
     std::printf("time     %.2f s, peak memory %.0f MiB\n", now() - start_,
@@ -306,7 +307,8 @@ void add_label_options(CLI::App& command, ExtractOptions& options) {
                       "surface is written to OUTPUT-LABEL.SUFFIX. The surfaces do not overlap, a "
                       "label inside another lies in a cavity of it, and neighbours are about half "
                       "a voxel apart. Excludes what tells the object, the start and the levels")
-          ->type_name("FILE");
+          ->type_name("FILE")
+          ->group("Files");
   command.get_option("INPUT")->required(false);
   for (const char* other :
        {"--iso", "--inside", "--level-iso", "--window", "--pad", "--feature", "--sigma", "--levels",

@@ -111,33 +111,38 @@ class Declarations {
       : command_(command), options_(options), p_(options.parameters) {}
 
   void files() {
+    group_ = "Files";
     command_
         .add_option("INPUT", options_.input,
                     "NIfTI, NRRD, MetaImage, TIFF stack, InVesalius .inv3, or a directory of "
                     "DICOM slices")
         ->required()
         ->type_name("");
-    command_
-        .add_option("-o,--output", options_.output,
-                    "Mesh to write, by suffix: .stl .ply (binary), .obj, .off, .vtp")
-        ->required()
-        ->type_name("FILE");
+    file("-o,--output", options_.output,
+         "Mesh to write, by suffix: .stl .ply (binary), .obj, .off, .vtp")
+        ->required();
     choice("--space", kSpaces, options_.space,
            "Coordinates of the mesh: patient space in mm (lps: x to the left, y to the back, z to "
            "the head; ras: x to the right, y to the front) or voxel indices");
-    command_.add_option("--report", options_.report, "JSON report to write")->type_name("FILE");
-    command_
-        .add_option("--trace", options_.trace,
-                    "CSV to write: iteration, level, vertices, energy, speed and seconds of every "
-                    "iteration (figure 17)")
-        ->type_name("FILE");
-    command_.add_flag("--each-level", options_.each_level,
-                      "Write the surface at the end of each level too, OUTPUT-levelH.SUFFIX "
-                      "(figures 14, 16, 20)");
-    command_.add_flag("--quiet", options_.quiet, "No progress and no summary; errors only");
+    file("--report", options_.report, "JSON report to write");
+    file("--trace", options_.trace,
+         "CSV to write: iteration, level, vertices, energy, speed and seconds of every iteration "
+         "(figure 17)");
+    flag(
+        "--each-level", [&o = options_] { o.each_level = true; },
+        "Write the surface at the end of each level too, OUTPUT-levelH.SUFFIX (figures 14, 16, "
+        "20)");
+    CLI::Option* quiet = flag(
+        "--quiet", [&o = options_] { o.progress = Progress::kNone; },
+        "No progress and no summary; errors only");
+    flag(
+        "--slicer-progress", [&o = options_] { o.progress = Progress::kSlicer; },
+        "Progress on stdout as command-line modules tell it to 3D Slicer")
+        ->excludes(quiet);
   }
 
   void object() {
+    group_ = "Object";
     text("--iso", "VALUE[,VALUE...]", "",
          "Value of the surface, in the image's units. Several: one surface each, in this order, "
          "NAME-VALUE.SUFFIX; each starts from the last one on the full image where that is nearer "
@@ -166,6 +171,7 @@ class Declarations {
   }
 
   void feature() {
+    group_ = "Feature";
     choice("--feature", kFeatures, p_.feature,
            "What is taken for the image: itself, or the norm of its gradient per mm, as snakes "
            "have it; iso, window and pad are values of it");
@@ -173,6 +179,7 @@ class Declarations {
   }
 
   void pyramid() {
+    group_ = "Pyramid and start";
     text("--levels", "M", "3, fewer for small images",
          "Levels of the pyramid above the full image; 0: direct, without a pyramid",
          [&p = p_](const std::string& s) {
@@ -192,14 +199,13 @@ class Declarations {
          "mm); iso, the iso-surface of the coarsest image; mask=FILE, the surface of the voxels "
          "of a volume that are not 0; mesh=FILE, a closed oriented mesh (in --space)",
          [&o = options_](const std::string& s) { read_init(s, o); });
-    command_
-        .add_option("--attach", options_.attach,
-                    "File of places (in --space, mm) that draw the surface near them, \"attach X Y "
-                    "Z RADIUS [STRENGTH]\", or in which it does not move, \"pin X Y Z RADIUS\"")
-        ->type_name("FILE");
+    file("--attach", options_.attach,
+         "File of places (in --space, mm) that draw the surface near them, \"attach X Y Z RADIUS "
+         "[STRENGTH]\", or in which it does not move, \"pin X Y Z RADIUS\"");
   }
 
   void model() {
+    group_ = "Model";
     number("--curvature", p_.curvature,
            "alpha_c, smoothing by curvature, >= 0, relative to the attraction");
     number("--spring", p_.spring, "alpha_e, elasticity of edges, >= 0, relative to the attraction");
@@ -237,22 +243,23 @@ class Declarations {
          "Iterations of a level at most, >= 1; the full image may take as many again after late "
          "bubbles",
          [&p = p_](const std::string& s) { p.max_iterations = to_integer("--max-iterations", s); });
-    command_.add_flag_callback(
+    flag(
         "--no-late-bubbles", [&p = p_] { p.late_bubbles = 0; },
         "Start no bubbles in parts and cavities that a level's surface has missed (the paper's "
         "behaviour); with --force gradient alone there are none");
-    command_.add_flag_callback(
+    flag(
         "--no-sleeping", [&p = p_] { p.sleeping = 0; },
         "Move all vertices in every iteration, those too where nothing has moved for long");
-    command_.add_flag_callback(
+    flag(
         "--check-all", [&p = p_] { p.slow_vertices = 0; },
         "Check the constraints of all vertices in every iteration, also of slow ones");
-    command_.add_flag_callback(
+    flag(
         "--no-renumbering", [&p = p_] { p.renumbering = 0; },
         "Do not number vertices along a space-filling curve: slower, for comparisons");
   }
 
   void machine() {
+    group_ = "Machine";
     text("--threads", "N", "one per core", "Threads, 1 .. 1024; results do not depend on it",
          [&options = options_](const std::string& s) {
            options.context.threads = to_integer("--threads", s);
@@ -267,7 +274,17 @@ class Declarations {
                     const std::function<void(const std::string&)>& read) {
     return command_.add_option_function<std::string>(name, read, meaning)
         ->type_name(type)
-        ->default_str(fallback);
+        ->default_str(fallback)
+        ->group(group_);
+  }
+
+  CLI::Option* file(const std::string& name, std::string& path, const std::string& meaning) {
+    return command_.add_option(name, path, meaning)->type_name("FILE")->group(group_);
+  }
+
+  CLI::Option* flag(const std::string& name, const std::function<void()>& set,
+                    const std::string& meaning) {
+    return command_.add_flag_callback(name, set, meaning)->group(group_);
   }
 
   CLI::Option* number(const std::string& name, double& value, const std::string& meaning) {
@@ -285,6 +302,7 @@ class Declarations {
   CLI::App& command_;
   ExtractOptions& options_;
   plc_parameters& p_;
+  std::string group_;  // of the help that the next options stand in
 };
 
 }  // namespace
@@ -344,6 +362,7 @@ void add_extract_options(CLI::App& command, ExtractOptions& options) {
           "of the others. May be given several times")
       ->type_name("NAME=OPTIONS")
       ->expected(1)
+      ->group("Object")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 

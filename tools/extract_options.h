@@ -6,6 +6,7 @@
 
 #include "engine/pellicle.h"
 #include "tools/option_values.h"
+#include "tools/progress_line.h"
 
 namespace plc::tools {
 
@@ -31,7 +32,7 @@ struct ExtractOptions {
   plc_context_options context;
   plc_space space = PLC_SPACE_LPS;
   bool each_level = false;
-  bool quiet = false;
+  Progress progress = Progress::kText;
 
   ExtractOptions();  // the engine's defaults
 };

@@ -1,12 +1,15 @@
 // The `pellicle` command. Exit codes: 0 done, 1 a mesh or result is not valid, 2 bad usage or
 // input, 130 interrupted. Every error is one line on stderr.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <memory>
 #include <new>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/pellicle.h"
 #include "tools/command_check.h"
@@ -15,6 +18,7 @@
 #include "tools/command_measure.h"
 #include "tools/command_phantom.h"
 #include "tools/command_render.h"
+#include "tools/slicer_description.h"
 #include "tools/volume_io.h"
 
 namespace {
@@ -46,6 +50,7 @@ class Command {
     render_ = add("render", "Draw a shaded picture of a mesh");
     add_extract_options(*extract_, extract_options_);
     add_label_options(*extract_, extract_options_);
+    add_slicer_option(*extract_);
     add_check_options(*check_, check_options_);
     add_measure_options(*measure_, measure_options_);
     add_phantom_options(*phantom_, phantom_arguments_);
@@ -54,10 +59,14 @@ class Command {
 
   int run(int argc, char** argv) {
     try {
-      app_.parse(argc, argv);
+      std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);
+      if (!arguments.empty() && arguments[0] == extract_->get_name())
+        accept_slicer_names(arguments);
+      std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
+      app_.parse(std::move(arguments));
       read_structures(extract_options_);
     } catch (const CLI::Success& e) {
-      return app_.exit(e);  // --help, --version
+      return app_.exit(e);  // --help, --version, --xml
     } catch (const CLI::ParseError& e) {
       const auto unknown = app_.remaining();
       if (app_.get_subcommands().empty() && !unknown.empty()) {

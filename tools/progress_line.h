@@ -1,25 +1,33 @@
-// What a long run tells on stderr: one line that is rewritten on a terminal, else a line now and
-// then.
+// What a long run tells of how far it is: people on stderr, by one line that is rewritten on a
+// terminal, else by a line now and then; or 3D Slicer on stdout.
 #pragma once
 #include "engine/pellicle.h"
 
 namespace plc::tools {
 
+enum class Progress {
+  kNone,
+  kText,
+  kSlicer  // what Slicer looks for in the output of its command-line modules
+};
+
 class ProgressLine {
  public:
-  explicit ProgressLine(bool quiet);
+  explicit ProgressLine(Progress to);
   ~ProgressLine();  // leaves a terminal's line empty
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void update(const plc_progress& progress);
   void clear();
+  void done();  // when all is written
 
  private:
-  bool quiet_;
+  Progress to_;
   bool terminal_;
   bool written_ = false;
-  double due_;  // seconds of the run at which to write next
+  double told_ = 0;  // the largest fraction so far: labels that are tried again make it fall
+  double due_;       // seconds of the run at which to write next
 };
 
 }  // namespace plc::tools

@@ -1,18 +1,19 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian packages that the named purposes need:
-#   tools/setup.sh [build] [test] [demo] [lint] [compilers] [perf] [peers] [fuzz]
+#   tools/setup.sh [build] [test] [demo] [lint] [compilers] [perf] [peers] [fuzz] [package]
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
 
 build=(g++ cmake make libhwy-dev libtbb-dev libmimalloc2.0 libinsighttoolkit5-dev libarchive-dev
   libexpat1-dev zlib1g-dev libembree-dev libpng-dev libcli11-dev nlohmann-json3-dev)
-test=(catch2 invesalius-examples jq)
+test=(catch2 invesalius-examples jq pkg-config python3)
 demo=(invesalius-examples)
 lint=(clang-format clang-tidy)
 compilers=(clang)
 perf=(jq gnuplot-nox invesalius-examples libbenchmark-dev)
 fuzz=(clang libclang-rt-14-dev)  # libFuzzer and the sanitizers
 peers=(libvtk9-dev libcgal-dev)  # programs that perf/run compares with
+package=(dpkg-dev file)
 
 wanted=()
 for purpose in "$@"; do
@@ -25,7 +26,8 @@ for purpose in "$@"; do
     perf) wanted+=("${perf[@]}") ;;
     fuzz) wanted+=("${fuzz[@]}") ;;
     peers) wanted+=("${peers[@]}") ;;
-    *) echo "setup.sh: unknown purpose $purpose: build, test, demo, lint, compilers, perf, peers or fuzz" >&2; exit 2 ;;
+    package) wanted+=("${package[@]}") ;;
+    *) echo "setup.sh: unknown purpose $purpose: build, test, demo, lint, compilers, perf, peers, fuzz or package" >&2; exit 2 ;;
   esac
 done
 
