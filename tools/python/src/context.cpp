@@ -55,7 +55,7 @@ Context::Context(int threads, plc_simd simd, int64_t memory_limit, py::object lo
 
 // What was made with the context holds it: nothing uses it any more.
 Context::~Context() {
-  for (const Grave& grave : graves_) grave.destroy();
+  for (const Grave& grave : graves_) grave.destroy(grave.handle);
   plc_context_destroy(handle_);
 }
 
@@ -76,8 +76,8 @@ void Context::keep(const py::error_already_set& error) {
   if (failure_ == nullptr) failure_ = std::make_unique<py::error_already_set>(error);
 }
 
-void Context::bury(std::function<void()> destroy, std::shared_ptr<py::object> lent) {
-  graves_.push_back({std::move(destroy), std::move(lent)});
+void Context::bury(void* handle, void (*destroy)(void*), std::shared_ptr<py::object> lent) {
+  graves_.push_back({handle, destroy, std::move(lent)});
   settle();
 }
 
@@ -85,25 +85,26 @@ void Context::settle() {
   if (graves_.empty() || used_here() || !mutex_.try_lock()) return;
   std::vector<Grave> graves;
   graves.swap(graves_);
-  for (const Grave& grave : graves) grave.destroy();
+  for (const Grave& grave : graves) grave.destroy(grave.handle);
   mutex_.unlock();
   // The arrays go here, which may run any Python code.
 }
 
-Context::Use::Use(Context& context, bool nested) : context_(context), inner_(context.used_here()) {
+Context::Use::Use(Context& context, bool nested)
+    : context_(context), inner_(context.used_here()), python_(nullptr) {
   if (inner_ && !nested) {
     throw std::invalid_argument(
         "the context is in use by the call that made this callback: use another one");
   }
-  released_.emplace();
+  python_ = PyEval_SaveThread();
   if (!inner_) wait();
 }
 
 void Context::Use::wait() {
   while (!context_.mutex_.try_lock_for(kLookForSignals)) {
-    released_.reset();
+    PyEval_RestoreThread(python_);
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    released_.emplace();
+    python_ = PyEval_SaveThread();
   }
   context_.user_ = std::this_thread::get_id();
 }
@@ -113,7 +114,7 @@ Context::Use::~Use() {
     context_.user_ = std::thread::id();
     context_.mutex_.unlock();
   }
-  released_.reset();
+  PyEval_RestoreThread(python_);
   if (!inner_) context_.settle();
 }
 

@@ -4,10 +4,8 @@
 #include <pybind11/pybind11.h>
 
 #include <atomic>
-#include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -54,7 +52,7 @@ class Context {
 
   // Destroys a handle: now, or when the thread that uses the context has left it. `lent` is let go
   // afterwards. With the GIL.
-  void bury(std::function<void()> destroy, std::shared_ptr<py::object> lent);
+  void bury(void* handle, void (*destroy)(void*), std::shared_ptr<py::object> lent);
 
   // For callbacks: runs function() with the GIL. False where it threw: the exception is kept, and
   // thrown by the call into the engine that is under way.
@@ -92,10 +90,11 @@ class Context {
     void wait();
     Context& context_;
     bool inner_;
-    std::optional<py::gil_scoped_release> released_;
+    PyThreadState* python_;  // of this thread, without the GIL
   };
   struct Grave {
-    std::function<void()> destroy;
+    void* handle;
+    void (*destroy)(void*);
     std::shared_ptr<py::object> lent;
   };
 
@@ -119,7 +118,8 @@ class Handle {
       : context_(std::move(context)), lent_(std::move(lent)) {}
   ~Handle() {
     if (handle_ == nullptr) return;
-    context_->bury([handle = handle_] { kDestroy(handle); }, std::move(lent_));
+    context_->bury(
+        handle_, [](void* handle) { kDestroy(static_cast<T*>(handle)); }, std::move(lent_));
   }
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;

@@ -174,7 +174,7 @@ class Reader {
     }
   }
   py::sequence sequence(const char* name, const char* kind) const {
-    const py::object value = fields_[name];
+    py::object value = fields_[name];
     if (!py::isinstance<py::sequence>(value) || py::isinstance<py::str>(value)) {
       throw py::type_error(std::string(name) + ": must be " + kind);
     }

@@ -9,7 +9,7 @@ namespace plc::python {
 
 namespace {
 
-using py::literals::operator""_a;
+using namespace py::literals;
 
 template <class T>
 py::tuple triple(const T* values) {

@@ -137,7 +137,7 @@ std::pair<double, double> input_range(const AnySurface& surface) {
   return range;
 }
 
-SurfacePointer create(std::shared_ptr<Context> context, const std::string& space,
+SurfacePointer create(const std::shared_ptr<Context>& context, const std::string& space,
                       const Geometry& geometry, const MeshArrays& mesh) {
   const plc_space s = space_of(space);
   const plc_image image = image_of(geometry);
