@@ -199,7 +199,7 @@ def test_scalars():
     assert surface.scalars("area").sum() == pytest.approx(surface.measures().area, rel=1e-3)
     valence = np.bincount(surface.faces.ravel(), minlength=surface.vertex_count)
     assert np.array_equal(surface.scalars("valence"), valence)
-    assert np.isfinite(surface.scalars("speed")).all()
+    assert np.isfinite(surface.scalars("movement")).all()
     with pytest.raises(ValueError, match="'mean_curvature', 'gaussian_curvature'"):
         surface.scalars("mean")
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 Space = Literal["lps", "ras", "voxel"]
-Scalar = Literal["mean_curvature", "gaussian_curvature", "area", "valence", "speed"]
+Scalar = Literal["mean_curvature", "gaussian_curvature", "area", "valence", "movement"]
 Simd = Literal["auto", "scalar", "sse4", "avx2", "avx512"]
 Verdict = Literal["accept", "more", "stop"]
 Triple = tuple[float, float, float]

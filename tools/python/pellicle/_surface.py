@@ -134,10 +134,10 @@ class Surface:
 
         Parameters
         ----------
-        name : {"mean_curvature", "gaussian_curvature", "area", "valence", "speed"}
-            Curvatures and the mixed area as `curvature`, the number of neighbours, or the speed of
-            the last iteration along the normal, in delta per time: where it is not small the
-            surface has not come to rest.
+        name : {"mean_curvature", "gaussian_curvature", "area", "valence", "movement"}
+            Curvatures and the mixed area as `curvature`, the number of neighbours, or the movement
+            of the last iteration along the normal, in delta: where it is not small the surface has
+            not come to rest.
 
         Returns
         -------

@@ -212,7 +212,7 @@ plc_scalar scalar_of(const std::string& word) {
                                            {"gaussian_curvature", PLC_SCALAR_GAUSSIAN_CURVATURE},
                                            {"area", PLC_SCALAR_AREA},
                                            {"valence", PLC_SCALAR_VALENCE},
-                                           {"speed", PLC_SCALAR_SPEED}}));
+                                           {"movement", PLC_SCALAR_MOVEMENT}}));
 }
 
 plc_simd simd_of(const std::string& word) {
