@@ -81,7 +81,7 @@ def test_layout_and_order_do_not_matter(pill_surface):
 def test_order_is_not_guessed(pill_surface):
     mirrored = pellicle.extract(pill(), 100, order="xyz")
     assert mirrored.hash != pill_surface.hash
-    assert mirrored.vertices.max(axis=0).argmax() == 0  # 22 + 11 along the array's last axis: z
+    assert mirrored.vertices.max(axis=0).argmax() == 2  # the pill is long on the array's last axis
     size = np.ptp(mirrored.vertices, axis=0)
     assert np.argsort(size).tolist() == [1, 0, 2]
 
@@ -272,12 +272,10 @@ def test_attachments_draw_the_surface_and_pins_hold_it():
     assert gap(drawn) < gap(free) / 2
     weak = pellicle.extract(ball(), 0.5, levels=0, attachments=[[*place, 4]])
     assert weak.hash == pellicle.extract(ball(), 0.5, levels=0, attachments=[*place, 4, 1]).hash
-    start = octahedron(13)
-    start = (start[0] + 15.5, start[1])
-    pinned = pellicle.extract(
-        ball(), 0.5, mesh=start, levels=0, pins=[[28.5, 15.5, 15.5, 2]], late_bubbles=False
-    )
-    assert pinned.vertices[:, 0].max() > 28
+    start = pellicle.extract(ball(radius=12), 0.5)
+    back = pellicle.extract(ball(), 0.5, mesh=start, levels=0)
+    pinned = pellicle.extract(ball(), 0.5, mesh=start, levels=0, pins=[27.5, 15.5, 15.5, 5])
+    assert back.vertices[:, 0].max() < 26 < 27 < pinned.vertices[:, 0].max()
     with pytest.raises(ValueError, match="rows of 4"):
         pellicle.extract(ball(), 0.5, pins=[[1, 2, 3]])
 

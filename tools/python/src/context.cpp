@@ -1,6 +1,5 @@
 #include "tools/python/src/context.h"
 
-#include <chrono>
 #include <stdexcept>
 
 namespace plc::python {
@@ -102,7 +101,7 @@ Context::Use::Use(Context& context, bool nested)
 
 void Context::Use::wait() {
   while (!context_.mutex_.try_lock_for(kLookForSignals)) {
-    PyEval_RestoreThread(python_);
+    take_gil([this] { PyEval_RestoreThread(python_); });
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     python_ = PyEval_SaveThread();
   }
@@ -114,7 +113,7 @@ Context::Use::~Use() {
     context_.user_ = std::thread::id();
     context_.mutex_.unlock();
   }
-  PyEval_RestoreThread(python_);
+  take_gil([this] { PyEval_RestoreThread(python_); });
   if (!inner_) context_.settle();
 }
 

@@ -4,8 +4,10 @@
 #include <pybind11/pybind11.h>
 
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -19,6 +21,17 @@ namespace py = pybind11;
 
 // Throws the exception of pellicle/_errors.py that stands for the status.
 [[noreturn]] void raise(plc_status status, const std::string& message);
+
+// take() takes the GIL. When Python ends, threads that ask for it are ended by unwinding, which C++
+// code above may not allow: here they sleep until the process goes, as from Python 3.14 on.
+template <class Take>
+void take_gil(Take&& take) noexcept {
+  try {
+    take();
+  } catch (...) {
+    for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+  }
+}
 
 class Context {
  public:
@@ -58,7 +71,8 @@ class Context {
   // thrown by the call into the engine that is under way.
   template <class Function>
   bool guarded(Function&& function) {
-    const py::gil_scoped_acquire gil;
+    std::optional<py::gil_scoped_acquire> gil;
+    take_gil([&] { gil.emplace(); });
     try {
       function();
       return true;
