@@ -35,7 +35,7 @@ cd "$dir"
 "$dir/venv/bin/python" -m pytest -q -p no:cacheprovider --rootdir "$root/tests/python" \
   "$root/tests/python"
 
-# The types: of the package itself, of a program that uses it, and that the stubs name what is there.
+# The types of the package, and of a program that uses it.
 mypy=("$python" -m mypy --strict --python-executable "$dir/venv/bin/python" --cache-dir "$dir/mypy")
 "${mypy[@]}" -p pellicle
 "${mypy[@]}" "$root/tests/python/typed_sample.py"

@@ -1,5 +1,6 @@
 """Errors, names and the package itself."""
 
+import ast
 import dataclasses
 import doctest
 import inspect
@@ -154,6 +155,20 @@ def test_this_is_the_installed_module_and_shows_nothing_of_the_engine():
         check=True,
     ).stdout
     assert "PyInit__pellicle" in symbols and "plc_" not in symbols
+
+
+def test_the_stubs_name_what_is_there():
+    stub = ast.parse((pathlib.Path(pellicle.__file__).parent / "_pellicle.pyi").read_text())
+    classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
+    functions = {node.name for node in stub.body if isinstance(node, ast.FunctionDef)}
+
+    def public(thing):
+        return {name for name in vars(thing) if not name.startswith("_")}
+
+    assert public(_pellicle) == functions | set(classes)
+    for name, node in classes.items():
+        members = {part.name for part in node.body if isinstance(part, ast.FunctionDef)}
+        assert public(getattr(_pellicle, name)) == members - {"__init__"}, name
 
 
 def test_everything_public_is_documented():
