@@ -7,10 +7,16 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 python=${PYTHON:-/usr/bin/python3}
 
-if ! "$python" -c 'import ensurepip, mypy, numpy, pip, pytest, setuptools, venv, wheel' 2>/dev/null ||
-  ! "$python" -c 'import os, sysconfig; os.stat(sysconfig.get_path("include") + "/Python.h")' 2>/dev/null ||
-  [ ! -e /usr/include/pybind11/pybind11.h ]; then
-  echo "The packages of tools/setup.sh python are missing."
+missing=$("$python" - <<'END'
+import importlib.util, os, sysconfig
+modules = "ensurepip mypy numpy pip pytest setuptools venv wheel".split()
+headers = [sysconfig.get_path("include") + "/Python.h", "/usr/include/pybind11/pybind11.h"]
+print(*[name for name in modules if not importlib.util.find_spec(name)],
+      *[path for path in headers if not os.path.exists(path)])
+END
+) || missing=$python
+if [ -n "$missing" ]; then
+  echo "Missing, of the packages of tools/setup.sh python: $missing"
   exit 77
 fi
 
