@@ -22,7 +22,7 @@ fi
 
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
-if [ -n "${1:-}" ]; then export PELLICLE_BUILD_DIR=$1; fi
+if [ -n "${1:-}" ]; then export PELLICLE_BUILD_DIR; PELLICLE_BUILD_DIR=$(realpath -m "$1"); fi
 if [ -n "${2:-}" ]; then export PELLICLE_COMMAND; PELLICLE_COMMAND=$(realpath "$2"); fi
 export PELLICLE_SOURCE=$root PYTHONDONTWRITEBYTECODE=1
 unset PYTHONPATH

@@ -1,7 +1,8 @@
 """Builds the engine and the extension module with CMake; everything else is in pyproject.toml.
 
-PELLICLE_BUILD_DIR names a build directory to use and keep. One that has been configured is taken as
-it is, if with -DPELLICLE_PYTHON=ON. Without it the build is made in a temporary directory.
+PELLICLE_BUILD_DIR names a build directory (an absolute path) to use and keep. One that has been
+configured, which must be with -DPELLICLE_PYTHON=ON, is taken as it is. Without the variable the build
+is made in a temporary directory.
 """
 
 import atexit
@@ -40,7 +41,9 @@ def temporary():
 
 class CMakeBuild(build_ext):
     def build_extension(self, extension):
-        build = Path(os.environ.get("PELLICLE_BUILD_DIR") or temporary()).absolute()
+        build = Path(os.environ.get("PELLICLE_BUILD_DIR") or temporary())
+        if not build.is_absolute():  # pip has changed the directory
+            raise SystemExit(f"PELLICLE_BUILD_DIR={build}: must be an absolute path")
         if not (build / "CMakeCache.txt").exists():
             subprocess.run(
                 [
