@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian packages that the named purposes need:
-#   tools/setup.sh [build] [test] [demo] [lint] [compilers] [perf] [peers] [fuzz] [package]
+#   tools/setup.sh [build] [test] [python] [demo] [lint] [compilers] [perf] [peers] [fuzz] [package]
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
 
 build=(g++ cmake make libhwy-dev libtbb-dev libmimalloc2.0 libinsighttoolkit5-dev libarchive-dev
   libexpat1-dev zlib1g-dev libembree-dev libpng-dev libcli11-dev nlohmann-json3-dev)
 test=(catch2 invesalius-examples jq pkg-config python3)
+python=(python3-dev pybind11-dev python3-numpy python3-pip python3-venv python3-setuptools
+  python3-wheel python3-pytest python3-mypy)
 demo=(invesalius-examples)
 lint=(clang-format clang-tidy)
 compilers=(clang)
@@ -20,6 +22,7 @@ for purpose in "$@"; do
   case $purpose in
     build) wanted+=("${build[@]}") ;;
     test) wanted+=("${test[@]}") ;;
+    python) wanted+=("${python[@]}") ;;
     demo) wanted+=("${demo[@]}") ;;
     lint) wanted+=("${lint[@]}") ;;
     compilers) wanted+=("${compilers[@]}") ;;
@@ -27,7 +30,11 @@ for purpose in "$@"; do
     fuzz) wanted+=("${fuzz[@]}") ;;
     peers) wanted+=("${peers[@]}") ;;
     package) wanted+=("${package[@]}") ;;
-    *) echo "setup.sh: unknown purpose $purpose: build, test, demo, lint, compilers, perf, peers, fuzz or package" >&2; exit 2 ;;
+    *)
+      echo "setup.sh: unknown purpose $purpose: build, test, python, demo, lint, compilers, perf," \
+        "peers, fuzz or package" >&2
+      exit 2
+      ;;
   esac
 done
 

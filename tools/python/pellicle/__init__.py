@@ -1,0 +1,95 @@
+"""Closed, oriented, non-self-intersecting triangulated surfaces from 3D images.
+
+``extract`` makes a surface of an image in one call; ``Volume``, ``Pyramid`` and ``Run`` make it in
+steps of any size. ``check_mesh``, ``component_measures``, ``curvature``, ``geodesic``, ``distance``
+and ``nearest_vertex`` measure any mesh. Images are arrays indexed [z, y, x], or [x, y, z] with
+``order="xyz"``; coordinates, spacing and all other triples are x, y, z.
+"""
+
+from ._context import Context
+from ._errors import (
+    Cancelled,
+    InternalError,
+    InvalidArgument,
+    InvalidData,
+    OutOfMemory,
+    PellicleError,
+)
+from ._extract import extract
+from ._images import Geometry, Order, geometry_from_affine
+from ._meshes import (
+    check_mesh,
+    component_measures,
+    curvature,
+    distance,
+    geodesic,
+    nearest_vertex,
+)
+from ._parameters import Parameters
+from ._pellicle import version
+from ._records import (
+    Check,
+    ComponentMeasures,
+    Components,
+    Curvature,
+    Distances,
+    ForcePoints,
+    LevelReport,
+    Measures,
+    Memory,
+    Progress,
+    PyramidLevel,
+    Range,
+    Scalar,
+    Seconds,
+    Simd,
+    Space,
+    Verdict,
+)
+from ._steps import Pyramid, Run, Volume
+from ._surface import Surface
+
+__version__ = version()
+
+__all__ = [
+    "Cancelled",
+    "Check",
+    "ComponentMeasures",
+    "Components",
+    "Context",
+    "Curvature",
+    "Distances",
+    "ForcePoints",
+    "Geometry",
+    "InternalError",
+    "InvalidArgument",
+    "InvalidData",
+    "LevelReport",
+    "Measures",
+    "Memory",
+    "Order",
+    "OutOfMemory",
+    "Parameters",
+    "PellicleError",
+    "Progress",
+    "Pyramid",
+    "PyramidLevel",
+    "Range",
+    "Run",
+    "Scalar",
+    "Seconds",
+    "Simd",
+    "Space",
+    "Surface",
+    "Verdict",
+    "Volume",
+    "check_mesh",
+    "component_measures",
+    "curvature",
+    "distance",
+    "extract",
+    "geodesic",
+    "geometry_from_affine",
+    "nearest_vertex",
+    "version",
+]

@@ -1,0 +1,113 @@
+"""Arrays as images: axes, types and where they lie."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Literal, TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _pellicle
+from ._records import Triple
+
+Order = Literal["zyx", "xyz"]
+Vector = Sequence[float] | npt.NDArray[np.floating[Any]]
+
+_NATIVE = [np.dtype(t) for t in ("uint8", "int16", "uint16", "int32", "float32")]
+_IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+class Geometry(TypedDict):
+    """Where an image lies, for ``**``: see `geometry_from_affine`."""
+
+    spacing: Triple
+    origin: Triple
+    direction: npt.NDArray[np.float64]
+
+
+def geometry_from_affine(affine: npt.ArrayLike, space: Literal["ras", "lps"] = "ras") -> Geometry:
+    """Spacing, origin and direction of a matrix from voxel indices to patient space.
+
+    Parameters
+    ----------
+    affine : array_like
+        (4, 4), as nibabel's ``image.affine``: of indices i, j, k and mm.
+    space : {"ras", "lps"}
+        Where it leads to. nibabel's lead to "ras".
+
+    Returns
+    -------
+    Geometry
+        For ``extract(voxels, iso, order="xyz", **geometry_from_affine(image.affine))``.
+    """
+    matrix = np.array(affine, dtype=np.float64)
+    if matrix.shape != (4, 4):
+        raise ValueError(f"affine: must be 4 x 4, not of shape {matrix.shape}")
+    if space not in ("ras", "lps"):
+        raise ValueError(f"space {space!r}: must be 'ras' or 'lps'")
+    if space == "ras":
+        matrix[:2] *= -1
+    spacing = np.linalg.norm(matrix[:3, :3], axis=0)
+    if not (np.isfinite(matrix).all() and (spacing > 0).all()):
+        raise ValueError("affine: an axis has no length")
+    return Geometry(
+        spacing=_triple("spacing", spacing),
+        origin=_triple("origin", matrix[:3, 3]),
+        direction=matrix[:3, :3] / spacing,
+    )
+
+
+def _triple(name: str, values: Vector) -> Triple:
+    array = np.asarray(values, dtype=np.float64)
+    if array.shape != (3,):
+        raise ValueError(f"{name}: must be three numbers: x, y, z")
+    return (float(array[0]), float(array[1]), float(array[2]))
+
+
+def geometry_of(
+    spacing: Vector, origin: Vector, direction: npt.ArrayLike | None
+) -> _pellicle.Geometry:
+    """As the engine takes it."""
+    axes = np.asarray(_IDENTITY if direction is None else direction, dtype=np.float64)
+    if axes.shape not in ((3, 3), (9,)):
+        raise ValueError("direction: must be 3 x 3, or its nine numbers row by row")
+    return _pellicle.Geometry(
+        _triple("spacing", spacing), _triple("origin", origin), axes.ravel().tolist()
+    )
+
+
+def voxels_of(image: npt.ArrayLike, order: Order, name: str = "image") -> npt.NDArray[Any]:
+    """The array indexed [x, y, z], of a type of the engine. A view, where no value changes."""
+    if order not in ("zyx", "xyz"):
+        raise ValueError(f"order {order!r}: must be 'zyx' or 'xyz'")
+    array = np.asarray(image)
+    if array.ndim != 3:
+        raise ValueError(f"{name}: must have three axes, not {array.ndim}")
+    array = _typed(array, name)
+    if not array.flags.aligned or 0 in array.strides:
+        array = array.copy()
+    return array.transpose() if order == "zyx" else array
+
+
+def _typed(array: npt.NDArray[Any], name: str) -> npt.NDArray[Any]:
+    kind, size = array.dtype.kind, array.dtype.itemsize
+    native = array.dtype.newbyteorder("=")
+    if native in _NATIVE:
+        return array.astype(native, copy=False)
+    if kind == "b":
+        return array.view(np.uint8)
+    if kind == "i" and size == 1:
+        return array.astype(np.int16)
+    if kind in "iu":
+        info = np.iinfo(np.int32)
+        if array.size > 0 and (array.min() < info.min or array.max() > info.max):
+            raise ValueError(f"{name}: {array.dtype} values do not fit into int32")
+        return array.astype(np.int32)
+    if kind == "f" and size <= 8:
+        with np.errstate(over="ignore"):
+            rounded = array.astype(np.float32)
+        if size == 8 and np.isinf(rounded).any() and not np.isinf(array).any():
+            raise ValueError(f"{name}: {array.dtype} values do not fit into float32")
+        return rounded
+    raise TypeError(f"{name}: voxels of type {array.dtype} are not supported")

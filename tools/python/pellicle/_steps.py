@@ -1,0 +1,310 @@
+"""An image to a surface in steps: `Volume`, `Pyramid`, `Run`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _pellicle
+from ._context import Context, core_of
+from ._extras import Extras, ForceFunction, LevelFunction, ProgressFunction
+from ._images import Order, Vector, geometry_of, voxels_of
+from ._meshes import MeshLike
+from ._parameters import Parameters, fields_of
+from ._records import Progress, PyramidLevel, Range, Space
+from ._surface import Surface
+
+# The values of plc_amount.
+_ONE_ITERATION, _ONE_LEVEL, _ALL_LEVELS = 0, 1, 2
+
+
+class Volume:
+    """An image for pyramids.
+
+    Parameters
+    ----------
+    image, spacing, origin, direction, order
+        As in `extract`.
+    copy : bool
+        False: the voxels stay in the array where they are of a type of the engine and x is fastest
+        in memory (see `borrowed`); they must not change then while the volume, a pyramid or a run
+        of it is there. The array itself is kept alive. True: the volume has voxels of its own.
+    context : Context, optional
+        Also of what is made from the volume, unless told otherwise.
+
+    Raises
+    ------
+    InvalidData
+        For fewer than two voxels along an axis, spacing that is not positive, an origin that is
+        not finite, or singular directions.
+    """
+
+    def __init__(
+        self,
+        image: npt.ArrayLike,
+        *,
+        spacing: Vector = (1, 1, 1),
+        origin: Vector = (0, 0, 0),
+        direction: npt.ArrayLike | None = None,
+        order: Order = "zyx",
+        copy: bool = False,
+        context: Context | None = None,
+    ) -> None:
+        voxels = voxels_of(image, order)
+        geometry = geometry_of(spacing, origin, direction)
+        self._order = order
+        self._core = _pellicle.volume_create(core_of(context), voxels, geometry, not copy)
+        self._borrowed = isinstance(image, np.ndarray) and np.shares_memory(
+            image, self._core.voxels(), max_work=1
+        )
+
+    @property
+    def context(self) -> Context:
+        """The one that the volume was made with."""
+        return Context._of(self._core.context)
+
+    @property
+    def borrowed(self) -> bool:
+        """Whether the voxels are those of the array that was given."""
+        return self._borrowed
+
+    @property
+    def voxels(self) -> npt.NDArray[Any]:
+        """The voxels, indexed as the image was, not copied and not writable."""
+        voxels = self._core.voxels()
+        return voxels.transpose() if self._order == "zyx" else voxels
+
+    def range(self) -> Range:
+        """Smallest and largest voxel.
+
+        Raises
+        ------
+        InvalidData
+            Where some are NaN or infinite.
+        """
+        return Range(*self._core.range())
+
+
+class Pyramid:
+    """The images of all levels, for any number of runs, in any threads.
+
+    Parameters
+    ----------
+    volume : Volume
+        May go afterwards.
+    iso : float, optional
+        As in `extract`.
+    parameters : Parameters, optional
+        Instead of the defaults.
+    context : Context, optional
+        That of the volume where it is left out.
+    **changes
+        Fields of `Parameters` by name. Those from `iso` to `reduction` matter here.
+
+    Raises
+    ------
+    InvalidData
+        For voxels that are NaN or infinite, or an image too small for the levels.
+    """
+
+    def __init__(
+        self,
+        volume: Volume,
+        iso: float | None = None,
+        *,
+        parameters: Parameters | None = None,
+        context: Context | None = None,
+        **changes: Any,
+    ) -> None:
+        if not isinstance(volume, Volume):
+            raise TypeError(f"volume: must be a Volume, not {type(volume).__name__}")
+        wanted = chosen(parameters, iso, changes)
+        core = volume._core.context if context is None else core_of(context)
+        self._order = volume._order
+        self._core = _pellicle.pyramid_create(core, volume._core, fields_of(wanted))
+
+    @property
+    def context(self) -> Context:
+        """The one that the pyramid was made with."""
+        return Context._of(self._core.context)
+
+    @property
+    def parameters(self) -> Parameters:
+        """As given, with everything that was derived from the image filled in."""
+        return Parameters(**self._core.parameters())
+
+    @property
+    def levels(self) -> tuple[PyramidLevel, ...]:
+        """The images, the full one first."""
+        return tuple(PyramidLevel(**level) for level in self._core.levels())
+
+    def values(self, level: int) -> npt.NDArray[np.float32]:
+        """The image of a level: a new array of values 0 .. 1, indexed as the volume's image."""
+        values = self._core.values(level)
+        return values if self._order == "zyx" else values.transpose()
+
+
+class Run:
+    """An evolution in progress: look at it, save it, or stop between any two iterations.
+
+    Exactly `extract`, in as many calls as one likes. A call that a callback has stopped leaves
+    the run between two iterations: it can go on.
+
+    Parameters
+    ----------
+    pyramid : Pyramid
+        May go afterwards.
+    parameters : Parameters, optional
+        Instead of those of the pyramid. What the pyramid does not read may differ.
+    space, seeds, mask, mesh, attachments, pins, extra_force, progress, level
+        As in `extract`. The mask is indexed as the volume's image.
+    context : Context, optional
+        That of the pyramid where it is left out. Give each run its own to use several at the same
+        time.
+    **changes
+        Fields of `Parameters` by name.
+    """
+
+    def __init__(
+        self,
+        pyramid: Pyramid,
+        *,
+        parameters: Parameters | None = None,
+        space: Space = "lps",
+        seeds: npt.ArrayLike | None = None,
+        mask: npt.ArrayLike | None = None,
+        mesh: MeshLike | None = None,
+        attachments: npt.ArrayLike | None = None,
+        pins: npt.ArrayLike | None = None,
+        extra_force: ForceFunction | None = None,
+        progress: ProgressFunction | None = None,
+        level: LevelFunction | None = None,
+        context: Context | None = None,
+        _state: bytes | None = None,
+        **changes: Any,
+    ) -> None:
+        if not isinstance(pyramid, Pyramid):
+            raise TypeError(f"pyramid: must be a Pyramid, not {type(pyramid).__name__}")
+        extras = Extras(
+            order=pyramid._order,
+            space=space,
+            seeds=seeds,
+            mask=mask,
+            mesh=mesh,
+            attachments=attachments,
+            pins=pins,
+            extra_force=extra_force,
+            progress=progress,
+            level=level,
+        )
+        if parameters is None:
+            parameters = pyramid.parameters
+        wanted = extras.start(parameters.replace(**changes), changes)
+        core = pyramid._core.context if context is None else core_of(context)
+        self._space = space
+        self._callbacks = extras.callbacks()
+        self._done = False
+        self._between_levels = False
+        self._progress = Progress(0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0)
+        self._core = _pellicle.Run(
+            core, pyramid._core, fields_of(wanted), extras.core(), _state
+        )
+
+    @classmethod
+    def restore(cls, pyramid: Pyramid, state: bytes, **arguments: Any) -> Run:
+        """A run that goes on from a saved state, to the bits that the saved one would have had.
+
+        Parameters
+        ----------
+        pyramid : Pyramid
+            Equal to that of the saved run.
+        state : bytes
+            Of `save`, of this version of the library. `done` is False until the first call.
+        **arguments
+            Those of `Run`, equal to those of the saved run but for callbacks and context.
+
+        Raises
+        ------
+        InvalidData
+            Where the bytes are no state of a run, or of another version, pyramid, parameters or
+            extras.
+        """
+        return cls(pyramid, _state=bytes(state), **arguments)
+
+    @property
+    def context(self) -> Context:
+        """The one that the run was made with."""
+        return Context._of(self._core.context)
+
+    @property
+    def done(self) -> bool:
+        """Whether the full image has been left, or `level` has said "stop"."""
+        return self._done
+
+    @property
+    def between_levels(self) -> bool:
+        """Whether a level has come to its end: the next call starts the next one."""
+        return self._between_levels
+
+    @property
+    def progress(self) -> Progress:
+        """Of the last iteration, as of the last call that ended; zeros before the first."""
+        return self._progress
+
+    def iterate(self, count: int = 1) -> bool:
+        """Goes on for some iterations.
+
+        Returns
+        -------
+        bool
+            `done`.
+        """
+        for _ in range(count):
+            if self._advance(_ONE_ITERATION):
+                break
+        return self._done
+
+    def next_level(self) -> bool:
+        """Goes on to the end of the level; returns `done`."""
+        return self._advance(_ONE_LEVEL)
+
+    def finish(self) -> Surface:
+        """Goes on to the end.
+
+        Returns
+        -------
+        Surface
+            What `extract` gives.
+        """
+        self._advance(_ALL_LEVELS)
+        return self.surface()
+
+    def surface(self) -> Surface:
+        """The surface as it is now, a copy: valid after every iteration."""
+        return Surface._of(self._core.surface(), self._space)
+
+    def save(self) -> bytes:
+        """The state between two iterations, for `restore`: without image and callbacks."""
+        return self._core.save()
+
+    def _advance(self, amount: int) -> bool:
+        state = self._core.advance(amount, *self._callbacks)
+        self._done = state["done"]
+        self._between_levels = state["between_levels"]
+        self._progress = Progress(**state["progress"])
+        return self._done
+
+
+def chosen(
+    parameters: Parameters | None, iso: float | None, changes: dict[str, Any]
+) -> Parameters:
+    """The parameters of a call."""
+    if parameters is None:
+        parameters = Parameters()
+    elif not isinstance(parameters, Parameters):
+        raise TypeError(f"parameters: must be Parameters, not {type(parameters).__name__}")
+    if iso is not None:
+        changes = {**changes, "iso": iso}
+    return parameters.replace(**changes)
