@@ -7,6 +7,7 @@
 #include "engine/constants.h"
 #include "engine/parameters.h"
 #include "kernels/image_rows.h"
+#include "pyramid/check_volume.h"
 #include "pyramid/feature.h"
 
 namespace plc {
@@ -77,6 +78,10 @@ Status build(const std::shared_ptr<const VolumeData>& source, const plc_paramete
   }
   pyramid.seconds_images = now() - images_start;
   choose_isos(volume, background, pyramid);
+  host.log(PLC_LOG_INFO, "window " + number_text(p.window_low) + " .. " +
+                             number_text(p.window_high) + ", surrounded by " +
+                             number_text(p.pad_value) + ", " + std::to_string(p.levels) +
+                             " levels above the image");
   pyramid.seconds = now() - start;
   return {};
 }

@@ -13,17 +13,12 @@
 #include "engine/parameters.h"
 #include "engine/refinement.h"
 #include "engine/state_io.h"
+#include "pyramid/check_volume.h"
 #include "pyramid/mask.h"
 
 namespace plc {
 
 namespace {
-
-std::string text(double value) {
-  char buffer[40];
-  std::snprintf(buffer, sizeof buffer, "%.6g", value);
-  return buffer;
-}
 
 bool same(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
@@ -87,9 +82,6 @@ Status Run::prepare(std::shared_ptr<const PyramidData> pyramid, Pyramid images, 
   extras_.mesh_abc = nullptr;
   extras_.attachments = nullptr;
   extras_.pins = nullptr;
-  host_->log(PLC_LOG_INFO, "window " + text(p.window_low) + " .. " + text(p.window_high) +
-                               ", surrounded by " + text(p.pad_value) + ", " +
-                               std::to_string(p.levels) + " levels above the image");
   recovery_.emplace(std::move(images), std::move(spec), host_->schedule, host_->simd, hooks(),
                     surface_->mesh, surface_->records);
   surface_->seconds.struct_size = sizeof surface_->seconds;
@@ -176,8 +168,8 @@ void Run::tell(const LevelRecord& r) const {
     return;
   }
   const std::string what = std::to_string(r.iterations) + " iterations, " +
-                           std::to_string(r.vertices) + " vertices, energy " + text(r.energy) +
-                           ", " + text(r.seconds.total) + " s";
+                           std::to_string(r.vertices) + " vertices, energy " +
+                           number_text(r.energy) + ", " + number_text(r.seconds.total) + " s";
   host_->log(r.converged ? PLC_LOG_INFO : PLC_LOG_WARNING,
              level + (r.converged ? "converged, " : "not converged, ") + what);
 }

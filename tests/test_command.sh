@@ -113,7 +113,7 @@ for file in empty.nrrd words.txt words.nrrd cut.nrrd cut.mha cut_header.mha flat
   none.nrrd lying.nrrd vectors.mha short.inv3 cut.inv3 nothing.inv3 no_images no_dicom; do
   extract "$file" "$file" $file --iso 0.5
 done
-extract "more memory than there is" "memory" giant.nrrd --iso 0.5
+extract "more voxels than the file holds" "is truncated" giant.nrrd --iso 0.5
 extract "constant image" "constant\|same value\|range" constant.nrrd --iso 0.5
 extract "NaN voxels" "nan\|finite" nan.nrrd --iso 0.5
 extract "infinite voxels" "inf\|finite" infinite.nrrd --iso 0.5

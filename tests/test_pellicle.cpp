@@ -45,7 +45,10 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 TEST_CASE("the version is three numbers", "[pellicle]") {
   int major = -1, minor = -1, patch = -1;
   CHECK(std::sscanf(plc_version_string(), "%d.%d.%d", &major, &minor, &patch) == 3);
-  CHECK(major >= 0);
+  CHECK(major == PLC_VERSION_MAJOR);
+  CHECK(minor == PLC_VERSION_MINOR);
+  CHECK(patch == PLC_VERSION_PATCH);
+  CHECK(plc_version() == PLC_VERSION);
 }
 
 TEST_CASE("defaults are as the header says", "[pellicle]") {

@@ -76,7 +76,7 @@ TEST_CASE("as many threads as asked for take part, even where there are fewer co
           "[schedule]") {
   const Schedule schedule(8);
   size_t most = 0;
-  for (int attempt = 0; attempt < 20 && most < 8; ++attempt) {
+  for (int attempt = 0; attempt < 200 && most < 8; ++attempt) {
     most = std::max(most, threads_of_loop(schedule, 64));
   }
   CHECK(most == 8);

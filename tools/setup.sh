@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian packages that the named purposes need:
-#   tools/setup.sh [build] [test] [python] [demo] [lint] [compilers] [perf] [peers] [fuzz] [package]
+#   tools/setup.sh [build] [test] [python] [demo] [lint] [compilers] [perf] [peers] [fuzz]
+#     [package] [coverage]
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
 
@@ -16,6 +17,7 @@ perf=(jq gnuplot-nox invesalius-examples libbenchmark-dev)
 fuzz=(clang libclang-rt-14-dev)  # libFuzzer and the sanitizers
 peers=(libvtk9-dev libcgal-dev)  # programs that perf/run compares with
 package=(dpkg-dev file)
+coverage=(gcovr jq)
 
 wanted=()
 for purpose in "$@"; do
@@ -30,9 +32,10 @@ for purpose in "$@"; do
     fuzz) wanted+=("${fuzz[@]}") ;;
     peers) wanted+=("${peers[@]}") ;;
     package) wanted+=("${package[@]}") ;;
+    coverage) wanted+=("${coverage[@]}") ;;
     *)
       echo "setup.sh: unknown purpose $purpose: build, test, python, demo, lint, compilers, perf," \
-        "peers, fuzz or package" >&2
+        "peers, fuzz, package or coverage" >&2
       exit 2
       ;;
   esac
