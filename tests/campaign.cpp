@@ -221,7 +221,7 @@ int run_many(const Options& o) {
                 static_cast<long long>(summary.findings()), told - start);
     std::fflush(stdout);
   };
-  const bool ran = campaign::run_cases(o.workers, o.from, o.count, tell);
+  const bool ran = campaign::run_seeds(o.workers, o.from, o.count, campaign::run_seed, tell);
   std::fclose(file);
   if (!ran) {
     std::fprintf(stderr, "no process can be started: %s\n", std::strerror(errno));

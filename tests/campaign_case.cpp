@@ -92,7 +92,7 @@ void choose_runs(Case& c) {
     --target;
   }
   c.simd = static_cast<plc_simd>(target);
-  c.work = once_in(random, 40) ? 800000 : 40000;
+  c.work = once_in(random, 60) ? 500000 : 15000;
 }
 
 }  // namespace

@@ -191,8 +191,9 @@ const Fault kFaults[] = {
        std::swap(m.abc[0], m.abc[1]);
        set_mesh(c, m);
      }},
-    {"mesh inside out", kData, "inside", [](Case& c) { set_mesh(c, samples::flipped(ball())); }},
-    {"meshes that meet", kData, "meet",
+    {"mesh inside out", kData, "wrongly oriented",
+     [](Case& c) { set_mesh(c, samples::flipped(ball())); }},
+    {"meshes that meet", kData, "self-intersecting",
      [](Case& c) {
        samples::Soup m = ball();
        m.append(samples::moved(ball(), 2, 1, 0.5));

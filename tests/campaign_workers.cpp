@@ -53,12 +53,11 @@ void limit_memory() {
 }
 
 // Seeds come in, notes go out, until there are no more.
-[[noreturn]] void work(int in, int out) {
+[[noreturn]] void work(int in, int out, const std::function<Note(uint64_t)>& run) {
   limit_memory();
   uint64_t seed = 0;
   while (read(in, &seed, sizeof seed) == sizeof seed) {
-    const Case c = make_case(seed);
-    const Note note = note_of(c, run_case(c));
+    const Note note = run(seed);
     if (write(out, &note, sizeof note) != sizeof note) break;
   }
   _exit(0);
@@ -74,8 +73,9 @@ struct Worker {
 
 class Pool {
  public:
-  Pool(const Workers& options, const std::function<void(const Note&)>& tell)
-      : options_(options), tell_(tell) {}
+  Pool(const Workers& options, const std::function<Note(uint64_t)>& run,
+       const std::function<void(const Note&)>& tell)
+      : options_(options), run_(run), tell_(tell) {}
 
   bool run(uint64_t from, uint64_t count);
 
@@ -87,6 +87,7 @@ class Pool {
   void stop(Worker& worker) const;
 
   const Workers& options_;
+  const std::function<Note(uint64_t)>& run_;
   const std::function<void(const Note&)>& tell_;
   std::vector<Worker> workers_;
 };
@@ -108,7 +109,7 @@ bool Pool::start(Worker& worker) {
       if (other.in >= 0) close(other.in);
       if (other.out >= 0) close(other.out);
     }
-    work(seeds[0], notes[1]);
+    work(seeds[0], notes[1], run_);
   }
   close(seeds[0]);
   close(notes[1]);
@@ -201,9 +202,15 @@ bool Pool::run(uint64_t from, uint64_t count) {
 
 }  // namespace
 
-bool run_cases(const Workers& workers, uint64_t from, uint64_t count,
+Note run_seed(uint64_t seed) {
+  const Case c = make_case(seed);
+  return note_of(c, run_case(c));
+}
+
+bool run_seeds(const Workers& workers, uint64_t from, uint64_t count,
+               const std::function<Note(uint64_t)>& run,
                const std::function<void(const Note&)>& tell) {
-  return Pool(workers, tell).run(from, count);
+  return Pool(workers, run, tell).run(from, count);
 }
 
 }  // namespace campaign

@@ -28,9 +28,13 @@ struct Workers {
   double timeout = 120;  // seconds for a case
 };
 
-// The cases from .. from + count - 1, about in this order; `tell` is called on the calling thread.
-// The calling process must have one thread only. False where no process can be started.
-bool run_cases(const Workers& workers, uint64_t from, uint64_t count,
+// Makes the case of a seed and runs it.
+Note run_seed(uint64_t seed);
+
+// The seeds from .. from + count - 1, about in this order: `run` in a worker, `tell` on the calling
+// thread. The calling process must have one thread only. False where no process can be started.
+bool run_seeds(const Workers& workers, uint64_t from, uint64_t count,
+               const std::function<Note(uint64_t)>& run,
                const std::function<void(const Note&)>& tell);
 
 }  // namespace campaign
