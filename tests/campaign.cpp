@@ -20,7 +20,8 @@ using campaign::Note;
 constexpr const char* kUsage =
     "usage: campaign [N] [--from SEED] [--jobs J] [--timeout SECONDS] [--findings FILE]\n"
     "       campaign --seed SEED [--write PREFIX]\n"
-    "Runs the N (default 20000) cases from SEED (default 1) on, J (default 1) at a time. What is\n"
+    "Runs the N (default 20000) cases from SEED (default 1) on, J (default 1) at a time. One that\n"
+    "takes SECONDS (default 60) of the processor, or ten times as long, hangs. What is\n"
     "wrong goes to FILE (default campaign-findings.txt), a line per seed; exit code 1 if anything\n"
     "is. --seed runs one case, tells all about it, and writes its image to PREFIX.nrrd and its\n"
     "surface to PREFIX.off.\n";

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <vector>
 
 #include "engine/schedule.h"
@@ -68,8 +69,17 @@ struct Worker {
   int in = -1, out = -1;  // seeds to it, notes from it
   bool busy = false;
   uint64_t seed = 0;
-  double since = 0;
+  double since = 0;  // of the clock
+  double processor_then = 0;
 };
+
+// That the process has used so far.
+double processor_seconds(pid_t pid) {
+  clockid_t clock{};
+  timespec used{};
+  if (clock_getcpuclockid(pid, &clock) != 0 || clock_gettime(clock, &used) != 0) return 0;
+  return static_cast<double>(used.tv_sec) + static_cast<double>(used.tv_nsec) * 1e-9;
+}
 
 class Pool {
  public:
@@ -84,7 +94,8 @@ class Pool {
   void give(Worker& worker, uint64_t seed);
   void lost(Worker& worker, bool hangs);
   void listen(Worker& worker);
-  void stop(Worker& worker) const;
+  bool hangs(const Worker& worker) const;
+  static void stop(Worker& worker);
 
   const Workers& options_;
   const std::function<Note(uint64_t)>& run_;
@@ -113,7 +124,7 @@ bool Pool::start(Worker& worker) {
   }
   close(seeds[0]);
   close(notes[1]);
-  worker = {pid, seeds[1], notes[0], false, 0, 0};
+  worker = {pid, seeds[1], notes[0], false, 0, 0, 0};
   if (pid > 0) return true;
   close(worker.in);
   close(worker.out);
@@ -125,11 +136,17 @@ void Pool::give(Worker& worker, uint64_t seed) {
   worker.busy = true;
   worker.seed = seed;
   worker.since = plc::now();
+  worker.processor_then = processor_seconds(worker.pid);
   // Should it be gone already, reading from it tells.
   if (write(worker.in, &seed, sizeof seed) != sizeof seed) return;
 }
 
-void Pool::stop(Worker& worker) const {
+bool Pool::hangs(const Worker& worker) const {
+  return processor_seconds(worker.pid) - worker.processor_then > options_.timeout ||
+         plc::now() - worker.since > 10 * options_.timeout;
+}
+
+void Pool::stop(Worker& worker) {
   close(worker.in);
   close(worker.out);
   worker.in = worker.out = -1;
@@ -187,7 +204,7 @@ bool Pool::run(uint64_t from, uint64_t count) {
       Worker& worker = workers_[whose[k]];
       if (open[k].revents != 0) {
         listen(worker);
-      } else if (plc::now() - worker.since > options_.timeout) {
+      } else if (hangs(worker)) {
         lost(worker, true);
       }
     }

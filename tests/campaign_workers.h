@@ -25,7 +25,9 @@ struct Note {
 
 struct Workers {
   int jobs = 1;
-  double timeout = 120;  // seconds for a case
+  // Seconds of the processor for a case, in which a busy machine may be slow; ten times as many of
+  // the clock, for one that waits for ever.
+  double timeout = 60;
 };
 
 // Makes the case of a seed and runs it.
