@@ -1,8 +1,9 @@
-// A campaign: N random evolutions, each in full twice with other threads and another SIMD target,
-// and what the engine promises held against each. tools/campaign builds and runs it.
-#include <sys/resource.h>
+// A campaign: N random evolutions, each in full twice in different ways, and what the engine
+// promises held against each. tools/campaign builds and runs it.
+#include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -71,6 +72,8 @@ bool read_options(int argc, char** argv, Options& o) {
 }
 
 int run_one(const Options& o) {
+  using Control = oneapi::tbb::global_control;
+  const Control threads(Control::max_allowed_parallelism, 8);
   const campaign::Case c = campaign::make_case(o.seed);
   std::fputs(campaign::description(c).c_str(), stdout);
   std::fflush(stdout);
@@ -119,6 +122,13 @@ class Summary {
     const char* init = note.init < 0 ? "?" : campaign::init_name(static_cast<plc_init>(note.init));
     for (Row* row : {&phantoms_[note.phantom], &inits_[init], &all_}) count(note, *row);
     ++findings_[static_cast<size_t>(note.finding)];
+    steps_ += note.steps ? 1 : 0;
+    saved_ += note.saved ? 1 : 0;
+    paused_ += note.paused ? 1 : 0;
+    own_memory_ += note.own_memory ? 1 : 0;
+    backwards_ += note.backwards ? 1 : 0;
+    strided_ += note.strided ? 1 : 0;
+    out_of_memory_ += note.out_of_memory ? 1 : 0;
     const bool ok = note.status == PLC_OK;
     const bool ran = note.finding != Finding::kCrash && note.finding != Finding::kHang;
     if (!ok && ran) ++reasons_[reason_of(note.message)];
@@ -146,6 +156,14 @@ class Summary {
     for (const auto& [reason, times] : reasons_) {
       std::printf("%7lld  %s\n", static_cast<long long>(times), reason.c_str());
     }
+    std::printf(
+        "\nsecond runs: %lld in steps (%lld saved and restored, %lld paused), %lld with gaps "
+        "in the image, %lld in the host's memory, %lld with its loops backwards, %lld that ran "
+        "out of memory\n",
+        static_cast<long long>(steps_), static_cast<long long>(saved_),
+        static_cast<long long>(paused_), static_cast<long long>(strided_),
+        static_cast<long long>(own_memory_), static_cast<long long>(backwards_),
+        static_cast<long long>(out_of_memory_));
     std::printf("\nfindings\n");
     for (int f = 1; f < campaign::kFindings; ++f) {
       std::printf("%7lld  %s\n", static_cast<long long>(findings_[static_cast<size_t>(f)]),
@@ -193,6 +211,8 @@ class Summary {
   int64_t findings_[campaign::kFindings] = {};
   int64_t iterations_ = 0, vertices_ = 0, most_vertices_ = 0;
   double case_seconds_ = 0;
+  int64_t steps_ = 0, saved_ = 0, paused_ = 0, own_memory_ = 0, backwards_ = 0, strided_ = 0;
+  int64_t out_of_memory_ = 0;
   std::multimap<double, uint64_t> slowest_;
 };
 

@@ -81,18 +81,31 @@ void choose_model(Case& c) {
   p.renumbering = random.integer(0, 5) == 0 ? 0 : 1;
 }
 
-void choose_runs(Case& c) {
+void choose_second(Case& c) {
   Random random = draws(c.seed, Part::kRuns);
+  Way& way = c.second;
   constexpr int kThreads[] = {1, 2, 2, 3, 3, 8};
-  c.threads = random.one_of(kThreads);
+  way.threads = random.one_of(kThreads);
   // The best that the machine has of what was drawn.
   constexpr plc_simd kTargets[] = {PLC_SIMD_SCALAR, PLC_SIMD_SSE4, PLC_SIMD_AVX2, PLC_SIMD_AVX512};
   int target = random.one_of(kTargets);
   while (!plc::simd_target_available(static_cast<plc::SimdTarget>(target - PLC_SIMD_SCALAR))) {
     --target;
   }
-  c.simd = static_cast<plc_simd>(target);
+  way.simd = static_cast<plc_simd>(target);
   c.work = once_in(random, 60) ? 500000 : 15000;
+  way.own_memory = once_in(random, 4);
+  way.backwards = once_in(random, 6);
+  way.strided = once_in(random, 4);
+  way.steps = random.integer(0, 1) == 0;
+  way.ownership = random.integer(0, 1) == 0 ? PLC_COPY : PLC_BORROW;
+  constexpr plc_amount kAmounts[] = {PLC_ONE_ITERATION, PLC_ONE_ITERATION, PLC_ONE_LEVEL,
+                                     PLC_ALL_LEVELS};
+  way.amount = random.one_of(kAmounts);
+  if (once_in(random, 3)) way.pause_at = static_cast<int>(random.integer(1, 40));
+  if (once_in(random, 3)) way.save_at = static_cast<int>(random.integer(0, 40));
+  if (once_in(random, 3)) way.look_every = static_cast<int>(random.integer(1, 12));
+  if (once_in(random, 12)) way.memory_part = random.uniform(0, 1);
 }
 
 }  // namespace
@@ -143,7 +156,7 @@ Case make_case(uint64_t seed) {
   choose_values(c);
   choose_start(c);
   choose_extras(c);
-  choose_runs(c);
+  choose_second(c);
   c.refusals.push_back({PLC_CANCELLED, "cancelled"});
   c.refusals.push_back({PLC_INVALID_DATA, "no surface: nothing in the image holds one"});
   Random random = draws(seed, Part::kFault);
@@ -154,6 +167,7 @@ Case make_case(uint64_t seed) {
 std::string description(const Case& c) {
   const plc_parameters& p = c.parameters;
   const plc_image& image = c.image;
+  const Way& way = c.second;
   std::ostringstream out;
   out.precision(9);
   const auto three = [&](const char* name, const auto* values) {
@@ -186,8 +200,12 @@ std::string description(const Case& c) {
       << " late_bubbles " << p.late_bubbles << " sleeping " << p.sleeping << " slow_vertices "
       << p.slow_vertices << " renumbering " << p.renumbering << " more " << c.more_level << " stop "
       << c.stop_level << " cancel " << c.cancel_at << " work " << c.work << "\n  space "
-      << (c.space <= PLC_SPACE_VOXEL ? kSpaceNames[c.space] : "?") << ", second run: " << c.threads
-      << " threads, target " << c.simd << (c.fault.empty() ? "" : ", on purpose: ") << c.fault
+      << (c.space <= PLC_SPACE_VOXEL ? kSpaceNames[c.space] : "?")
+      << (c.fault.empty() ? "" : ", wrong on purpose: ") << c.fault << "\n  second run: threads "
+      << way.threads << " target " << way.simd << " steps " << way.steps << " ownership "
+      << way.ownership << " amount " << way.amount << " pause " << way.pause_at << " save "
+      << way.save_at << " look " << way.look_every << " strided " << way.strided << " own memory "
+      << way.own_memory << " backwards " << way.backwards << " memory part " << way.memory_part
       << '\n';
   return out.str();
 }

@@ -46,6 +46,24 @@ struct Refusal {
 
 enum class UserForce { kNone, kPressure, kCentre, kNotFinite };
 
+// How a run is made. The first is plc_extract on one thread and the best target; the second must
+// end with the same bits.
+struct Way {
+  int threads = 1;
+  plc_simd simd = PLC_SIMD_AUTO;
+  bool steps = false;  // a volume, a pyramid and a run, as below
+  plc_ownership ownership = PLC_BORROW;
+  plc_amount amount = PLC_ALL_LEVELS;  // of every call
+  int pause_at = 0;         // iteration of the whole run after which progress cancels once; 0: none
+  int save_at = -1;         // ... from which on the run goes on in another context; -1: none
+  int look_every = 0;       // iterations between looks at the surface; 0: none
+  bool strided = false;     // the image has gaps
+  bool own_memory = false;  // HostMemory
+  bool backwards = false;   // the host's loops, from the last task to the first
+  double memory_part = 0;   // a limit: of what the first run had at most; 0: none. May end in
+                            // PLC_OUT_OF_MEMORY
+};
+
 struct Case {
   uint64_t seed = 0;
   std::string phantom;
@@ -75,8 +93,7 @@ struct Case {
   std::string fault;  // what is wrong with the input on purpose; empty: nothing
   std::vector<Refusal> refusals;
 
-  int threads = 2;  // of the second run; the first has one, and the best target
-  plc_simd simd = PLC_SIMD_AUTO;
+  Way second;
 
   Case() = default;
   Case(Case&&) = default;

@@ -1,4 +1,4 @@
-// Runs a case twice, with other threads and another SIMD target, and says what is wrong.
+// Runs a case twice, the second time in another way, and says what is wrong.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -36,7 +36,9 @@ struct RunRecord {
   int64_t vertices = 0;
   std::vector<Iteration> iterations;
   std::vector<std::string> levels;  // a line for each
-  double seconds = 0;               // of the processor
+  int64_t memory = 0;               // bytes at most
+  bool paused = false, saved = false;
+  double seconds = 0;  // of the processor
 };
 
 struct Result {

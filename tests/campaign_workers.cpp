@@ -1,5 +1,6 @@
 #include "tests/campaign_workers.h"
 
+#include <oneapi/tbb/global_control.h>
 #include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -35,6 +36,14 @@ Note note_of(const Case& c, const Result& result) {
   note.iterations = static_cast<int>(first.iterations.size());
   note.vertices = first.vertices;
   note.seconds = result.seconds;
+  const RunRecord& second = result.runs[1];
+  note.steps = c.second.steps;
+  note.saved = second.saved;
+  note.paused = second.paused;
+  note.own_memory = c.second.own_memory;
+  note.backwards = c.second.backwards;
+  note.strided = c.second.strided;
+  note.out_of_memory = second.status == PLC_OUT_OF_MEMORY;
   put(note.phantom, c.phantom);
   put(note.fault, c.fault);
   put(note.message, first.message);
@@ -220,6 +229,9 @@ bool Pool::run(uint64_t from, uint64_t count) {
 }  // namespace
 
 Note run_seed(uint64_t seed) {
+  // oneTBB gives a process as many threads as there are cores, unless it is told.
+  using Control = oneapi::tbb::global_control;
+  static const Control threads(Control::max_allowed_parallelism, 8);
   const Case c = make_case(seed);
   return note_of(c, run_case(c));
 }

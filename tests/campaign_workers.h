@@ -15,6 +15,8 @@ struct Note {
   plc_status status;
   int init;
   int iterations;
+  bool steps, saved, paused, own_memory, backwards, strided;  // of the second run, as they came
+  bool out_of_memory;                                         // ... which it ended for
   int64_t vertices;
   double seconds;  // of the processor; of the clock where it did not come to its end
   char phantom[16];
