@@ -47,15 +47,13 @@ bool read_options(int argc, char** argv, Options& o) {
     const std::string name = argv[i];
     if (number(argv[i], o.count)) continue;
     if (++i == argc) return false;
+    if (name == "--findings" || name == "--write") {
+      (name == "--write" ? o.prefix : o.findings) = argv[i];
+      continue;
+    }
     uint64_t value = 0;
-    const bool is_number = number(argv[i], value);
-    if (name == "--findings") {
-      o.findings = argv[i];
-    } else if (name == "--write") {
-      o.prefix = argv[i];
-    } else if (!is_number) {
-      return false;
-    } else if (name == "--from") {
+    if (!number(argv[i], value)) return false;
+    if (name == "--from") {
       o.from = value;
     } else if (name == "--seed") {
       o.one = true;

@@ -10,6 +10,24 @@ namespace campaign {
 
 namespace {
 
+int64_t limit_of(const Case& c, const RunRecord& first) {
+  if (c.second.memory_part == 0) return 0;
+  return 1 + static_cast<int64_t>(c.second.memory_part * static_cast<double>(first.memory));
+}
+
+// Where the second run had no more memory, and where something is wrong on purpose, which steps may
+// find in another order, both statuses are right and need not be equal.
+bool comparable(const Case& c, const RunRecord& second) {
+  const bool out_of_memory = c.second.memory_part > 0 && second.status == PLC_OUT_OF_MEMORY;
+  return !out_of_memory && (c.fault.empty() || !c.second.steps);
+}
+
+constexpr const char* kFindingNames[kFindings] = {"none",       "invalid", "self-intersection",
+                                                  "rounded",    "status",  "invariant",
+                                                  "difference", "crash",   "hang"};
+
+}  // namespace
+
 std::string difference(const RunRecord& a, const RunRecord& b) {
   if (a.status != b.status || a.message != b.message) {
     return "status " + std::to_string(a.status) + " (" + a.message + ") and " +
@@ -39,24 +57,6 @@ std::string difference(const RunRecord& a, const RunRecord& b) {
   if (a.levels.size() != b.levels.size()) return "numbers of levels";
   return a.hash != b.hash ? "the results, not the levels" : "";
 }
-
-int64_t limit_of(const Case& c, const RunRecord& first) {
-  if (c.second.memory_part == 0) return 0;
-  return 1 + static_cast<int64_t>(c.second.memory_part * static_cast<double>(first.memory));
-}
-
-// Where the second run had no more memory, and where something is wrong on purpose, which steps may
-// find in another order, both statuses are right and need not be equal.
-bool comparable(const Case& c, const RunRecord& second) {
-  const bool out_of_memory = c.second.memory_part > 0 && second.status == PLC_OUT_OF_MEMORY;
-  return !out_of_memory && (c.fault.empty() || !c.second.steps);
-}
-
-constexpr const char* kFindingNames[kFindings] = {"none",       "invalid", "self-intersection",
-                                                  "rounded",    "status",  "invariant",
-                                                  "difference", "crash",   "hang"};
-
-}  // namespace
 
 const char* finding_name(Finding finding) {
   return kFindingNames[static_cast<size_t>(finding)];

@@ -48,6 +48,9 @@ struct Result {
   double seconds = 0;  // of the processor
 };
 
+// Where two runs part: an iteration, a level, the status; nothing where they are the same.
+std::string difference(const RunRecord& a, const RunRecord& b);
+
 // mesh: where not NULL, the surface of the first run, in the case's space.
 Result run_case(const Case& c, samples::Soup* mesh = nullptr);
 

@@ -28,6 +28,9 @@ samples::Soup soup_of(plc_context* context, const plc_surface* surface, plc_spac
 // With the coordinates that the mesh evolves in, which no change of space has rounded.
 samples::Soup exact_soup(const plc_surface* surface);
 
+// What is wrong with a mesh, kNone where nothing is; checker: any context.
+Finding judge(plc_context* checker, const samples::Soup& soup, std::string& what);
+
 class Watch {
  public:
   Watch(const Case& c, const Way& way, bool exact)

@@ -27,7 +27,8 @@ samples::Soup exact_soup(const plc_surface* surface) {
     const plc::Vec3 p = surface->mesh.at(v);
     soup.xyz.insert(soup.xyz.end(), {p.x, p.y, p.z});
   }
-  soup.abc = surface->mesh.faces();
+  const auto faces = surface->mesh.faces();
+  soup.abc.assign(faces.begin(), faces.end());
   return soup;
 }
 
@@ -86,31 +87,37 @@ int Watch::force(const plc_force_points& points, float* forces) const {
   return 0;
 }
 
-void Watch::check(const samples::Soup& soup, const std::string& where, bool rounded) {
+Finding judge(plc_context* checker, const samples::Soup& soup, std::string& what) {
   plc_check found{};
   found.struct_size = sizeof found;
   const plc_status status =
-      plc_check_mesh(checker_.get(), soup.xyz.data(), static_cast<int64_t>(soup.vertex_count()),
+      plc_check_mesh(checker, soup.xyz.data(), static_cast<int64_t>(soup.vertex_count()),
                      soup.abc.data(), static_cast<int64_t>(soup.face_count()), &found);
   if (status != PLC_OK) {
-    return fail(rounded ? Finding::kRounded : Finding::kInvalid,
-                where + ": " + plc_context_message(checker_.get()));
+    what = plc_context_message(checker);
+    return Finding::kInvalid;
   }
-  if (found.valid != 0 && found.isolated_vertices == 0) return;
-  const bool meets = found.self_intersections != 0;
-  const Finding kind = rounded ? Finding::kRounded
-                       : meets ? Finding::kSelfIntersection
-                               : Finding::kInvalid;
-  fail(kind, where + ": closed " + std::to_string(found.closed) + ", manifold " +
-                 std::to_string(found.manifold) + ", oriented " + std::to_string(found.oriented) +
-                 ", outward " + std::to_string(found.outward) + ", wrongly oriented components " +
-                 std::to_string(found.wrongly_oriented_components) + ", degenerate faces " +
-                 std::to_string(found.degenerate_faces) + ", isolated vertices " +
-                 std::to_string(found.isolated_vertices) + ", self-intersections " +
-                 std::to_string(found.self_intersections) + ", first " +
-                 std::to_string(found.first_intersection[0]) + " and " +
-                 std::to_string(found.first_intersection[1]) + " of " +
-                 std::to_string(soup.face_count()));
+  if (found.valid != 0 && found.isolated_vertices == 0) return Finding::kNone;
+  char line[320];
+  std::snprintf(line, sizeof line,
+                "closed %d, manifold %d, oriented %d, outward %d, wrongly oriented components "
+                "%lld, degenerate faces %lld, isolated vertices %lld, self-intersections %lld, "
+                "first %lld and %lld of %zu",
+                found.closed, found.manifold, found.oriented, found.outward,
+                static_cast<long long>(found.wrongly_oriented_components),
+                static_cast<long long>(found.degenerate_faces),
+                static_cast<long long>(found.isolated_vertices),
+                static_cast<long long>(found.self_intersections),
+                static_cast<long long>(found.first_intersection[0]),
+                static_cast<long long>(found.first_intersection[1]), soup.face_count());
+  what = line;
+  return found.self_intersections != 0 ? Finding::kSelfIntersection : Finding::kInvalid;
+}
+
+void Watch::check(const samples::Soup& soup, const std::string& where, bool rounded) {
+  std::string wrong;
+  const Finding found = judge(checker_.get(), soup, wrong);
+  if (found != Finding::kNone) fail(rounded ? Finding::kRounded : found, where + ": " + wrong);
 }
 
 void Watch::check_report(const plc_level_report& r) {
