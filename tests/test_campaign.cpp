@@ -1,17 +1,27 @@
-// Hundreds of random evolutions: what the engine promises holds after every iteration of each.
+// Hundreds of random evolutions: what the engine promises holds after every iteration of each; and
+// some of the cases of tools/campaign, with all that once went wrong.
 //
-// PELLICLE_CAMPAIGN_SEED=17 runs seed 17 alone; PELLICLE_CAMPAIGN_REPORT=1 prints a line per run.
+// PELLICLE_CAMPAIGN_SEED=17 runs seed 17 of the first alone; PELLICLE_CAMPAIGN_REPORT=1 prints a
+// line per run. tools/campaign --seed 17 runs that of the second.
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <csignal>
 #include <cstdlib>
+#include <functional>
 #include <iostream>
+#include <map>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "engine/edge_constraints.h"
 #include "engine/embedding_guard.h"
 #include "engine/mesh_check.h"
 #include "pyramid/memory.h"
+#include "tests/campaign_watch.h"
+#include "tests/campaign_workers.h"
+#include "tests/sample_api.h"
 #include "tests/sample_runs.h"
 
 namespace {
@@ -24,10 +34,17 @@ using samples::Run;
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr uint64_t kSeeds = 12;
 constexpr int64_t kFinished = 10;
+constexpr uint64_t kCases = 20;
 #else
-constexpr uint64_t kSeeds = 270;
-constexpr int64_t kFinished = 200;
+constexpr uint64_t kSeeds = 170;
+constexpr int64_t kFinished = 150;
+constexpr uint64_t kCases = 250;
 #endif
+
+// A case without a fault that gives a surface.
+constexpr uint64_t kValidSeed = 3;
+// Of what the first 200 cases are: another value means that every seed means something else.
+constexpr uint64_t kCasesHash = 0x4cc7ac908e7f0d23;
 
 // Violations of (1) and (2) at the end of a level.
 struct Leftovers {
@@ -199,23 +216,44 @@ void print(const Outcome& o, const std::string& name) {
             << std::endl;
 }
 
-std::vector<Outcome> run_all(const std::vector<uint64_t>& seeds, bool report,
-                             std::vector<std::string>& names) {
-  std::vector<Outcome> outcomes(seeds.size());
-  names.resize(seeds.size());
+// body(0) .. body(count - 1) on as many threads as there are cores.
+void on_all_cores(size_t count, const std::function<void(size_t)>& body) {
   std::atomic<size_t> next{0};
-  std::mutex printing;
   const auto work = [&] {
-    for (size_t i = next++; i < seeds.size(); i = next++) {
-      outcomes[i] = run_seed(seeds[i], names[i]);
-      const std::lock_guard<std::mutex> lock(printing);
-      if (report) print(outcomes[i], names[i]);
-    }
+    for (size_t i = next++; i < count; i = next++) body(i);
   };
   std::vector<std::thread> threads;
   for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) threads.emplace_back(work);
   work();
   for (std::thread& thread : threads) thread.join();
+}
+
+std::vector<Outcome> run_all(const std::vector<uint64_t>& seeds, bool report,
+                             std::vector<std::string>& names) {
+  std::vector<Outcome> outcomes(seeds.size());
+  names.resize(seeds.size());
+  std::mutex printing;
+  on_all_cores(seeds.size(), [&](size_t i) {
+    outcomes[i] = run_seed(seeds[i], names[i]);
+    const std::lock_guard<std::mutex> lock(printing);
+    if (report) print(outcomes[i], names[i]);
+  });
+  return outcomes;
+}
+
+struct CaseOutcome {
+  std::string phantom, init, fault, found;
+  plc_status status = PLC_OK;
+};
+
+std::vector<CaseOutcome> run_cases(const std::vector<uint64_t>& seeds) {
+  std::vector<CaseOutcome> outcomes(seeds.size());
+  on_all_cores(seeds.size(), [&](size_t i) {
+    const campaign::Case c = campaign::make_case(seeds[i]);
+    const campaign::Result result = campaign::run_case(c);
+    outcomes[i] = {c.phantom, campaign::init_name(c.parameters.init), c.fault, result.what,
+                   result.runs[0].status};
+  });
   return outcomes;
 }
 
@@ -251,4 +289,117 @@ TEST_CASE("random evolutions stay closed, oriented and embedded in every iterati
             << "; edges at the ends of levels: " << sum.left.edges << ", " << sum.left.violated
             << " violate (1) or (2)" << std::endl;
   CHECK((only != nullptr || finished >= kFinished));
+}
+
+TEST_CASE("cases of the campaign are valid, or refused for what is wrong, and the same twice",
+          "[campaign]") {
+  std::vector<uint64_t> seeds;
+  for (uint64_t seed = 1; seed <= kCases; ++seed) seeds.push_back(seed);
+  const std::vector<CaseOutcome> outcomes = run_cases(seeds);
+  std::set<std::string> phantoms, inits;
+  int64_t surfaces = 0;
+  for (size_t i = 0; i < seeds.size(); ++i) {
+    const CaseOutcome& o = outcomes[i];
+    INFO("tools/campaign --seed " << seeds[i]);
+    CHECK(o.found == "");
+    CHECK((o.fault.empty() || o.status != PLC_OK));
+    if (o.status != PLC_OK) continue;
+    ++surfaces;
+    phantoms.insert(o.phantom);
+    inits.insert(o.init);
+  }
+  std::cout << seeds.size() << " cases of the campaign, " << surfaces << " surfaces" << std::endl;
+  CHECK(surfaces >= static_cast<int64_t>(kCases * 6 / 10));
+  if (kCases < 100) return;
+  CHECK(phantoms.size() == 13);
+  CHECK(inits.size() == 6);
+}
+
+TEST_CASE("a case is the same wherever it is made", "[campaign]") {
+  uint64_t hash = 14695981039346656037ULL;
+  const auto take = [&](const std::string& text) {
+    for (const char letter : text) {
+      hash = (hash ^ static_cast<unsigned char>(letter)) * 1099511628211ULL;
+    }
+  };
+  for (uint64_t seed = 1; seed <= 200; ++seed) {
+    campaign::Case c = campaign::make_case(seed);
+    c.second.simd = PLC_SIMD_AUTO;  // of what this machine has
+    take(campaign::description(c));
+    for (const std::vector<std::byte>* bytes : {&c.voxels, &c.mask_voxels}) {
+      take({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    }
+  }
+  CHECK(hash == kCasesHash);
+}
+
+TEST_CASE("the campaign finds what it is there to find", "[campaign]") {
+  // A valid case that is said to be wrong: that it is accepted is a finding.
+  campaign::Case c = campaign::make_case(kValidSeed);
+  REQUIRE(campaign::run_case(c).finding == campaign::Finding::kNone);
+  c.fault = "nothing";
+  CHECK(campaign::run_case(c).finding == campaign::Finding::kStatus);
+  // A refusal that nobody expects.
+  c = campaign::make_case(kValidSeed);
+  c.parameters.curvature = -1;
+  CHECK(campaign::run_case(c).finding == campaign::Finding::kStatus);
+
+  const samples::Context context = samples::make_context();
+  const auto judged = [&](const samples::Soup& mesh) {
+    std::string what;
+    const campaign::Finding finding = campaign::judge(context.get(), mesh, what);
+    CHECK((finding == campaign::Finding::kNone) == what.empty());
+    return finding;
+  };
+  const samples::Soup ball = samples::sphere(2);
+  CHECK(judged(ball) == campaign::Finding::kNone);
+  CHECK(judged(samples::flipped(ball)) == campaign::Finding::kInvalid);
+  samples::Soup open = ball;
+  open.abc.resize(open.abc.size() - 3);
+  CHECK(judged(open) == campaign::Finding::kInvalid);
+  samples::Soup two = ball;
+  two.append(samples::moved(ball, 1, 0.3, 0.2));
+  CHECK(judged(two) == campaign::Finding::kSelfIntersection);
+
+  campaign::RunRecord one;
+  one.iterations = {{1, 1, 100, 0.5, 0.1}, {1, 2, 100, 0.25, 0.1}};
+  one.levels = {"level 1"};
+  one.hash = 7;
+  campaign::RunRecord other = one;
+  CHECK(campaign::difference(one, other) == "");
+  other.hash = 8;
+  CHECK(campaign::difference(one, other) == "the results, not the levels");
+  other.iterations[1].energy = std::nextafter(0.25, 1);
+  CHECK_THAT(campaign::difference(one, other), Catch::Contains("level 1 iteration 2"));
+  other.status = PLC_INVALID_DATA;
+  CHECK_THAT(campaign::difference(one, other), Catch::Contains("status 0"));
+}
+
+TEST_CASE("a case that crashes or hangs is told by its seed, and the others go on", "[campaign]") {
+  const auto run = [](uint64_t seed) {
+    if (seed == 3) std::raise(SIGKILL);
+    if (seed == 4) {
+      for (;;) std::this_thread::sleep_for(std::chrono::seconds(1));
+    }
+    if (seed == 6) {
+      for (std::atomic<int> busy{0};; ++busy) {
+      }
+    }
+    campaign::Note note{};
+    note.seed = seed;
+    return note;
+  };
+  for (const int jobs : {1, 3}) {
+    std::map<uint64_t, campaign::Finding> found;
+    const campaign::Workers workers{jobs, 0.5};
+    REQUIRE(campaign::run_seeds(workers, 1, 8, run, [&](const campaign::Note& note) {
+      CHECK(found.emplace(note.seed, note.finding).second);
+    }));
+    CHECK(found.size() == 8);
+    for (const auto& [seed, finding] : found) {
+      CHECK(finding == (seed == 3                ? campaign::Finding::kCrash
+                        : seed == 4 || seed == 6 ? campaign::Finding::kHang
+                                                 : campaign::Finding::kNone));
+    }
+  }
 }
