@@ -19,8 +19,8 @@ struct Destroy {
 };
 using Context = std::unique_ptr<plc_context, Destroy>;
 using VolumeHandle = std::unique_ptr<plc_volume, Destroy>;
-using Pyramid = std::unique_ptr<plc_pyramid, Destroy>;
-using Run = std::unique_ptr<plc_run, Destroy>;
+using PyramidHandle = std::unique_ptr<plc_pyramid, Destroy>;
+using RunHandle = std::unique_ptr<plc_run, Destroy>;
 using Surface = std::unique_ptr<plc_surface, Destroy>;
 
 inline Context make_context(int threads = 1, plc_simd simd = PLC_SIMD_AUTO) {

@@ -15,8 +15,8 @@ namespace {
 
 using Catch::Matchers::Contains;
 using samples::Context;
-using samples::Pyramid;
-using samples::Run;
+using Pyramid = samples::PyramidHandle;
+using Run = samples::RunHandle;
 using samples::Surface;
 using samples::VolumeHandle;
 
