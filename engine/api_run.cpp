@@ -154,6 +154,8 @@ LevelVerdict Run::ask_user() {
       return LevelVerdict::kMore;
     case PLC_VERDICT_STOP:
       return LevelVerdict::kStop;
+    case PLC_VERDICT_CANCEL:
+      return LevelVerdict::kCancel;
     default:
       return LevelVerdict::kAccept;
   }
@@ -366,6 +368,16 @@ plc_status plc_run_advance(plc_context* context, plc_run* run, plc_amount amount
     }
     if (Status s = run->run.advance(static_cast<plc::Amount>(amount)); !s.ok()) return s;
     if (state != nullptr) plc::give_struct(run->run.state(), state);
+    return {};
+  });
+}
+
+plc_status plc_run_get_state(plc_context* context, const plc_run* run, plc_run_state* state) {
+  return plc::guarded(context, [&]() -> Status {
+    if (run == nullptr) return plc::bad_argument("run: must not be NULL");
+    if (Status s = plc::check_output(state, "state"); !s.ok()) return s;
+    if (Status s = run->run.usable(); !s.ok()) return s;
+    plc::give_struct(run->run.state(), state);
     return {};
   });
 }

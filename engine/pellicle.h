@@ -336,7 +336,8 @@ typedef struct plc_level_report plc_level_report;
 typedef enum plc_verdict {
   PLC_VERDICT_ACCEPT = 0, /* on to the next level */
   PLC_VERDICT_MORE = 1,   /* up to max_iterations more on this level */
-  PLC_VERDICT_STOP = 2    /* the surface as it is is the result */
+  PLC_VERDICT_STOP = 2,   /* the surface as it is is the result */
+  PLC_VERDICT_CANCEL = 3  /* PLC_CANCELLED; a run that goes on asks again */
 } plc_verdict;
 
 /* The user's validation (5.1): called on the calling thread at the end of every level that holds a
@@ -443,10 +444,13 @@ typedef struct plc_run_state {
                             spent within calls on this run, or before it was saved */
 } plc_run_state;
 
-/* Goes on until the amount is done, or the run is. state may be NULL. A run that is done stays so:
- * PLC_OK. Callbacks may not use the run. */
+/* Goes on until the amount is done, or the run is. state may be NULL; it is written where the
+ * status is PLC_OK. A run that is done stays so: PLC_OK. Callbacks may not use the run. */
 PLC_API plc_status plc_run_advance(plc_context* context, plc_run* run, plc_amount amount,
                                    plc_run_state* state);
+/* The same without going on: of a run that was made, restored or cancelled just now. */
+PLC_API plc_status plc_run_get_state(plc_context* context, const plc_run* run,
+                                     plc_run_state* state);
 /* The surface as it is now, a copy, with the levels so far: closed, oriented and free of
  * self-intersections after every iteration. Where the run is done, what plc_extract gives. */
 PLC_API plc_status plc_run_surface(plc_context* context, const plc_run* run, plc_surface** surface);

@@ -70,6 +70,8 @@ Status Recovery::step() {
       return verify();
     case Phase::kRoundEnd:
       return end_round();
+    case Phase::kVerdict:
+      return ask_verdict();
   }
   return {ErrorCode::kInternal, "recovery: no such phase"};
 }
@@ -253,7 +255,13 @@ Status Recovery::end_round() {
   if (mesh_.vertex_count() == 0) return leave_level();
   renumber();
   evolution_.restart();
+  phase_ = Phase::kVerdict;
+  return {};
+}
+
+Status Recovery::ask_verdict() {
   const LevelVerdict verdict = hooks_.level ? hooks_.level(record()) : LevelVerdict::kAccept;
+  if (verdict == LevelVerdict::kCancel) return {ErrorCode::kCancelled, "cancelled"};
   if (verdict == LevelVerdict::kMore) {
     start_round(round_.number + 1);
     return {};

@@ -57,7 +57,7 @@ struct LevelRecord {
 };
 
 // What the user says of a level that has come to its end.
-enum class LevelVerdict { kAccept, kMore, kStop };
+enum class LevelVerdict { kAccept, kMore, kStop, kCancel };
 
 struct RecoveryProgress {
   int level, levels, iteration;
@@ -69,8 +69,8 @@ struct RecoveryHooks {
   // After every iteration; returns false to stop there. May be empty.
   std::function<bool(const RecoveryProgress&)> progress;
   // At the end of every level that holds a surface, which is then in mesh_space() of that level,
-  // without gaps in the ids. kMore: up to max_iterations more. kStop: the recovery ends here. May
-  // be empty.
+  // without gaps in the ids. kMore: up to max_iterations more. kStop: the recovery ends here.
+  // kCancel: it stops there, and asks again when it goes on. May be empty.
   std::function<LevelVerdict(const LevelRecord&)> level;
   // When a level has been left, whether it holds a surface or not. May be empty.
   std::function<void(const LevelRecord&)> left{};
@@ -114,7 +114,7 @@ class Recovery {
   bool restore(StateReader& from);
 
  private:
-  enum class Phase : uint8_t { kStart, kIterate, kCheck, kVerify, kRoundEnd };
+  enum class Phase : uint8_t { kStart, kIterate, kCheck, kVerify, kRoundEnd, kVerdict };
   // What sleeps tells nothing: all are woken, and only when they are calm the level has converged.
   struct Confirmation {
     int since = 0;       // iteration in which all were woken; 0: they were not
@@ -140,6 +140,7 @@ class Recovery {
   void check();
   Status verify();
   Status end_round();
+  Status ask_verdict();
   Status leave_level();
   Status add_late_bubbles(bool& added);
   bool confirmed(int calm);

@@ -69,7 +69,7 @@ bool Recovery::restore(StateReader& from) {
   const auto read = [&](auto& value) { from.read(value); };
   read(level_);
   read(entered_);
-  from.read(phase_, Phase::kRoundEnd);
+  from.read(phase_, Phase::kVerdict);
   read(done_);
   read(energy_);
   visit_round(round_, read);

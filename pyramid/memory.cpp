@@ -73,11 +73,11 @@ void* allocate_of_system(size_t size, size_t alignment) {
 
 }  // namespace
 
-thread_local Memory* Memory::current_ = nullptr;
+thread_local Memory* Memory::scoped = nullptr;
 
 Memory& Memory::current() {
   static Memory system;
-  return current_ == nullptr ? system : *current_;
+  return scoped == nullptr ? system : *scoped;
 }
 
 void* Memory::allocate(size_t size, size_t alignment) {

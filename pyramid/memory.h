@@ -39,7 +39,7 @@ class Memory {
 
  private:
   friend class MemoryScope;
-  static thread_local Memory* current_;
+  static thread_local Memory* scoped;
 
   Hooks hooks_;
   int64_t limit_ = 0;
@@ -50,8 +50,8 @@ class Memory {
 // Makes a memory the current one of this thread for as long as the scope lives.
 class MemoryScope {
  public:
-  explicit MemoryScope(Memory& memory) : before_(Memory::current_) { Memory::current_ = &memory; }
-  ~MemoryScope() { Memory::current_ = before_; }
+  explicit MemoryScope(Memory& memory) : before_(Memory::scoped) { Memory::scoped = &memory; }
+  ~MemoryScope() { Memory::scoped = before_; }
   MemoryScope(const MemoryScope&) = delete;
   MemoryScope& operator=(const MemoryScope&) = delete;
 
@@ -73,12 +73,10 @@ class MemoryAllocator {
   MemoryAllocator(const MemoryAllocator<U>& other) : memory_(other.memory()) {}
 
   T* allocate(size_t n) {
-    if (n > static_cast<size_t>(-1) / 2 / sizeof(T)) throw std::bad_alloc();
-    return static_cast<T*>(memory_->allocate(n * sizeof(T), alignment()));
+    if (n > static_cast<size_t>(-1) / 2 / kSize) throw std::bad_alloc();
+    return static_cast<T*>(memory_->allocate(n * kSize, alignment()));
   }
-  void deallocate(T* data, size_t n) noexcept {
-    memory_->release(data, n * sizeof(T), alignment());
-  }
+  void deallocate(T* data, size_t n) noexcept { memory_->release(data, n * kSize, alignment()); }
   MemoryAllocator select_on_container_copy_construction() const { return {}; }
   Memory* memory() const { return memory_; }
   template <typename U>
@@ -87,6 +85,7 @@ class MemoryAllocator {
   }
 
  private:
+  static constexpr size_t kSize = sizeof(T);  // NOLINT(bugprone-sizeof-expression): or of pointers
   static constexpr size_t alignment() { return alignof(T) < 8 ? 8 : alignof(T); }
   Memory* memory_;
 };

@@ -324,6 +324,42 @@ TEST_CASE("a force that cancels, in any of the four calls, leaves the iteration 
   }
 }
 
+TEST_CASE("a verdict may cancel, and is asked for again", "[pellicle_run]") {
+  const Scene s;
+  const Context context = samples::make_context();
+  const uint64_t whole =
+      plc_surface_hash(samples::extract(context.get(), s.image, s.parameters).get());
+  const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
+  int asked = 0;
+  samples::Host host;
+  host.level = [&](const plc_level_report&, const plc_surface*) {
+    return ++asked % 3 == 0 ? PLC_VERDICT_ACCEPT : PLC_VERDICT_CANCEL;
+  };
+  const plc_extras extras = samples::extras_of(host);
+  const Run run = run_of(context.get(), pyramid.get(), s.parameters, &extras);
+  plc_run_state state{};
+  state.struct_size = sizeof state;
+  int cancelled = 0;
+  while (plc_run_advance(context.get(), run.get(), PLC_ALL_LEVELS, nullptr) == PLC_CANCELLED) {
+    ++cancelled;
+    REQUIRE(plc_run_get_state(context.get(), run.get(), &state) == PLC_OK);
+    CHECK(state.done == 0);
+    // Saved before the answer, the question comes again.
+    Run restored;
+    REQUIRE(restore(context.get(), pyramid.get(), s.parameters, saved(context.get(), run.get()),
+                    restored, &extras) == PLC_OK);
+    plc_run_state there = state;
+    REQUIRE(plc_run_get_state(context.get(), restored.get(), &there) == PLC_OK);
+    CHECK(there.progress.energy == state.progress.energy);
+    CHECK(there.progress.level == state.progress.level);
+  }
+  CHECK(cancelled == 6);
+  CHECK(asked == 9);
+  REQUIRE(plc_run_get_state(context.get(), run.get(), &state) == PLC_OK);
+  CHECK(state.done == 1);
+  CHECK(hash_now(context.get(), run.get()) == whole);
+}
+
 TEST_CASE("a run that has failed has ended, and says so", "[pellicle_run]") {
   const samples::Volume volume = samples::ball({24, 24, 24});
   const plc_image image = samples::image_of(volume);

@@ -54,6 +54,7 @@ void tell_slicer(double fraction, const std::string& comment) {
 ProgressLine::ProgressLine(Progress to)
     : to_(to), terminal_(isatty(STDERR_FILENO) == 1), due_(period_of(to, terminal_)) {
   if (to_ != Progress::kSlicer) return;
+  due_ = 0;  // the first iteration is told, however short the run
   std::fputs("<filter-start><filter-name>Pellicle</filter-name></filter-start>\n", stdout);
   tell_slicer(0, "");
 }
