@@ -35,7 +35,7 @@ void put_meshes(const Seeds& seeds) {
   const samples::Soup soup = samples::cube();
   TriangleMesh mesh;
   mesh.xyz = soup.xyz;
-  mesh.abc = soup.abc;
+  mesh.abc.assign(soup.abc.begin(), soup.abc.end());
   for (const std::string name : {"plain", "normals", "scalars"}) {
     if (name == "normals") mesh.normals.assign(mesh.xyz.size(), 0.5F);
     if (name == "scalars") mesh.scalars = {{"Speed", std::vector<float>(mesh.xyz.size() / 3, 2)}};
