@@ -17,6 +17,10 @@ inline constexpr double kRefinement = 1.7320508075688772;
 // U_h / delta_h, within [1, 2.5 / sqrt 3] by (14). Larger means a finer mesh for the same image.
 inline constexpr double kUnitPerDelta = 1.2;
 
+// Coordinates lie within this of the origin of mesh space: further out floats do not tell
+// neighbouring voxels apart, and cells of the hash would be beyond their numbers.
+inline constexpr float kReach = 16777216;
+
 // ---- slow vertices (3.6) --------------------------------------------------------------------
 
 // The constraints of a vertex are checked when it has moved 0.2 delta since its last check, or

@@ -50,6 +50,22 @@ void include(FaceBox& all, const FaceBox& box) {
 
 }  // namespace
 
+Proposal propose_creation(const Mesh& mesh, const Edge& e) {
+  Proposal proposal;
+  const uint32_t fresh = mesh.slots();
+  const Vec3 place = midpoint(mesh.at(e.u), mesh.at(e.v));
+  const std::array<uint32_t, 4> ring{e.u, e.a, e.v, e.b};
+  std::array<Vec3, 4> around;
+  for (size_t k = 0; k < 4; ++k) around[k] = mesh.at(ring[k]);
+  for (size_t k = 0; k < 4; ++k) {
+    const size_t next = (k + 1) % 4;
+    proposal.faces.push_back({{fresh, ring[k], ring[next]}, {place, around[k], around[next]}});
+  }
+  proposal.plain = fan_is_plain(place, around.data(), around.size());
+  proposal.removed_edge = {e.u, e.v};
+  return proposal;
+}
+
 Proposal propose_inversion(const Mesh& mesh, const Edge& e) {
   Proposal proposal;
   proposal.faces = {face_of(mesh, e.u, e.a, e.b), face_of(mesh, e.a, e.v, e.b)};

@@ -27,6 +27,8 @@ struct Proposal {
   bool plain = false;
 };
 
+// On the place of creation.h.
+Proposal propose_creation(const Mesh& mesh, const Edge& edge);
 Proposal propose_inversion(const Mesh& mesh, const Edge& edge);
 Proposal propose_deletion(const Mesh& mesh, const Edge& edge, Vec3 place);
 Proposal propose_annular(const Mesh& mesh, const Cycle& cycle,

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/constants.h"
 #include "engine/face_rings.h"
 #include "engine/face_tree.h"
 #include "engine/measures.h"
@@ -197,16 +198,17 @@ Status check_valences(int64_t vertex_count, const uint32_t* abc, int64_t face_co
 }
 
 Status check_range(const double* xyz, size_t vertex_count, const FaceRings& rings) {
+  constexpr double kWidest = kReach;
   uint64_t used = 0;
   for (size_t v = 0; v < vertex_count; ++v) {
     if (rings.faces(v) == 0) continue;
     ++used;
     for (size_t k = 0; k < 3; ++k) {
-      if (std::abs(xyz[3 * v + k]) <= kImportReach) continue;
+      if (std::abs(xyz[3 * v + k]) <= kWidest) continue;
       char line[160];
       std::snprintf(line, sizeof line,
                     "mesh: vertex %zu: %c is %.6g in mesh space, expected -%.0f to %.0f", v,
-                    "xyz"[k], xyz[3 * v + k], kImportReach, kImportReach);
+                    "xyz"[k], xyz[3 * v + k], kWidest, kWidest);
       return refused(line);
     }
   }

@@ -8,10 +8,6 @@
 
 namespace plc {
 
-// Coordinates lie within this of the origin of mesh space: further out floats do not tell
-// neighbouring voxels apart.
-inline constexpr double kImportReach = 16777216;
-
 // xyz: three values of mesh space per vertex; abc: three indices per face, counter-clockwise seen
 // from outside. Replaces what is in the mesh, but for delta, which is left to the caller as are the
 // constraints for it (conform.h). Vertices without a face are dropped, the others keep their order.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/constants.h"
 #include "engine/mesh.h"
 #include "engine/mesh_invariants.h"
 #include "engine/state_io.h"
@@ -10,12 +11,22 @@ namespace plc {
 
 namespace {
 
-bool finite(const Buffer<float>& b) {
-  return std::all_of(b.begin(), b.end(), [](float x) { return std::isfinite(x); });
+bool within_reach(float x) {
+  return std::abs(x) <= kReach;
 }
 
-bool finite(const Streams3& s) {
-  return finite(s.x) && finite(s.y) && finite(s.z);
+bool within_reach(const Buffer<float>& b) {
+  return std::all_of(b.begin(), b.end(), [](float x) { return within_reach(x); });
+}
+
+bool within_reach(const Streams3& s) {
+  return within_reach(s.x) && within_reach(s.y) && within_reach(s.z);
+}
+
+bool within_reach(const Buffer<Packed>& b) {
+  return std::all_of(b.begin(), b.end(), [](const Packed& p) {
+    return within_reach(p.x) && within_reach(p.y) && within_reach(p.z);
+  });
 }
 
 }  // namespace
@@ -65,8 +76,9 @@ bool Mesh::restore(StateReader& from) {
     from.read_all(stream);
     from.demand(stream.size() == n);
   });
-  return restore_rings(from) && finite(velocity) && finite(normal) && finite(displacement) &&
-         finite(path) && broken_invariant(*this).empty();
+  return restore_rings(from) && within_reach(packed) && within_reach(velocity) &&
+         within_reach(normal) && within_reach(displacement) && within_reach(path) &&
+         broken_invariant(*this).empty();
 }
 
 bool Mesh::restore_rings(StateReader& from) {

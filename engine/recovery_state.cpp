@@ -1,7 +1,9 @@
 // A recovery between two iterations as bytes and back.
+#include <limits>
 #include <type_traits>
 
 #include "engine/recovery.h"
+#include "engine/self_meeting.h"
 
 namespace plc {
 
@@ -66,7 +68,14 @@ void Recovery::save(StateWriter& to) const {
 }
 
 bool Recovery::restore(StateReader& from) {
-  const auto read = [&](auto& value) { from.read(value); };
+  // Every whole number counts something, and not to where the next one is not a number any more.
+  const auto read = [&](auto& value) {
+    from.read(value);
+    using T = std::remove_reference_t<decltype(value)>;
+    if constexpr (std::is_integral_v<T> && std::is_signed_v<T>) {
+      from.demand(value >= 0 && value <= std::numeric_limits<T>::max() / 2);
+    }
+  };
   read(level_);
   read(entered_);
   from.read(phase_, Phase::kVerdict);
@@ -84,8 +93,10 @@ bool Recovery::restore(StateReader& from) {
   mesh_.clear();
   enter(entered_);
   if (!restore_tried(from) || !mesh_.restore(from)) return false;
+  if (mesh_.vertex_count() != 0 && mesh_.delta != delta_of(entered_)) return false;
   evolution_.restore(from);
   if (!from.ok()) return false;
+  if (!meeting_faces(mesh_, schedule_).empty()) return false;
   return phase_ == Phase::kStart || build_gradient_image().ok();
 }
 

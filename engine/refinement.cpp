@@ -4,11 +4,14 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "engine/blocks.h"
 #include "engine/constants.h"
+#include "engine/deletion.h"
 #include "engine/edge.h"
 #include "engine/inversion.h"
+#include "engine/predicates.h"
 #include "engine/self_meeting.h"
 #include "pyramid/memory.h"
 
@@ -103,20 +106,65 @@ FaceVertices create_face_vertices(Mesh& mesh, uint32_t old_slots) {
   return faces;
 }
 
-// The old edges come back where the inverted ones make the surface meet itself: the faces of before
-// did not. Each round gives back the edges of all faces that meet; with all given back none is
-// left.
+using Corners = std::array<uint32_t, 3>;
+
+// Those that meet others, and those without an area.
+Vector<Corners> wrong_faces(const Mesh& mesh, const Executor& executor) {
+  constexpr size_t kBlock = 4096;
+  Vector<Corners> wrong = meeting_faces(mesh, executor);
+  std::vector<Vector<Corners>> flat(block_count(mesh.slots(), kBlock));
+  const auto point = [&](uint32_t v) { return Point3{mesh.at(v).x, mesh.at(v).y, mesh.at(v).z}; };
+  run_blocks(executor, mesh.slots(), kBlock, [&](size_t block, size_t begin, size_t end) {
+    for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
+      const uint32_t d = mesh.valence(v);
+      for (uint32_t k = 0; k < d; ++k) {
+        const uint32_t a = mesh.neighbor(v, k);
+        const uint32_t b = mesh.neighbor(v, k + 1 == d ? 0 : k + 1);
+        if (v < a && v < b && collinear(point(v), point(a), point(b))) {
+          flat[block].push_back({v, a, b});
+        }
+      }
+    }
+  });
+  for (const auto& some : flat) wrong.insert(wrong.end(), some.begin(), some.end());
+  return wrong;
+}
+
+// The edge between two vertices that were created in faces gives way to the old one.
+bool give_back(Mesh& mesh, const Vector<uint8_t>& of_face, uint32_t c, uint32_t d) {
+  if (of_face[c] == 0 || of_face[d] == 0 || !mesh.adjacent(c, d)) return false;
+  invert_edge(mesh, edge_between(mesh, c, d));
+  return true;
+}
+
+// The face comes back in which c was created.
+void give_back_face(Mesh& mesh, const Vector<uint8_t>& of_face, uint32_t c) {
+  for (uint32_t k = 0; k < mesh.valence(c);) {
+    if (!give_back(mesh, of_face, c, mesh.neighbor(c, k))) ++k;
+  }
+  const uint32_t corner = mesh.neighbor(c, 0);
+  delete_edge(mesh, edge_between(mesh, corner, c), mesh.at(corner));
+}
+
+// What was before comes back where the surface meets itself now: it did not then. Each round gives
+// back the edges of all wrong faces; where these have none of the inverted ones, a vertex has been
+// rounded onto the far side of what is nearer than that, and its face comes back whole.
 // of_face: by id, whether a vertex was created in a face.
 void undo_where_meeting(Mesh& mesh, const Vector<uint8_t>& of_face, const Executor& executor) {
   for (;;) {
-    const auto meeting = meeting_faces(mesh, executor);
+    const auto wrong = wrong_faces(mesh, executor);
+    if (wrong.empty()) return;
     bool undone = false;
-    for (const auto& face : meeting) {
-      for (uint32_t i = 0; i < 3; ++i) {
-        const uint32_t c = face[i];
-        const uint32_t d = face[(i + 1) % 3];
-        if (of_face[c] == 0 || of_face[d] == 0 || !mesh.adjacent(c, d)) continue;
-        invert_edge(mesh, edge_between(mesh, c, d));
+    for (const auto& [a, b, c] : wrong) {
+      for (const auto& [x, y] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}}) {
+        undone = give_back(mesh, of_face, x, y) || undone;
+      }
+    }
+    if (undone) continue;
+    for (const Corners& face : wrong) {
+      for (const uint32_t v : face) {
+        if (of_face[v] == 0 || !mesh.alive(v)) continue;
+        give_back_face(mesh, of_face, v);
         undone = true;
       }
     }
@@ -187,6 +235,9 @@ void refine(Mesh& mesh, const Executor& executor, bool renumbering) {
   for (size_t i = 0; i < order.size(); ++i) of_face[i] = order[i] >= old_slots ? 1 : 0;
   mesh.renumber(order, executor);
   undo_where_meeting(mesh, of_face, executor);
+  if (mesh.vertex_count() != mesh.slots()) {
+    mesh.renumber(renumbering ? morton_order(mesh, executor) : living_order(mesh), executor);
+  }
   for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.wake(v);
 }
 

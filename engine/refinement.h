@@ -6,8 +6,8 @@
 
 namespace plc {
 
-// A vertex at the centre of each face, then every old edge inverted, except where the inverted
-// faces would meet the surface elsewhere. Valid on any mesh of ours: its graph is simple, so no two
+// A vertex at the centre of each face, then every old edge inverted, except where the new faces
+// would meet the surface elsewhere. Valid on any mesh of ours: its graph is simple, so no two
 // faces share two edges. delta is divided by sqrt 3, ids are renumbered along a Morton curve, every
 // vertex is due for a check.
 // renumbering: false leaves the ids as they come, without gaps; for comparisons.

@@ -375,9 +375,12 @@ bool Resolution::apply(const Candidate& candidate, size_t trial, OperationCounts
     case Operation::kInversion:
       if (count(apply_inversion(candidate, trial), counts.inversion)) return true;
       // A long edge that may not be inverted is split.
-      return candidate.key < 0 && count(apply_creation(candidate), counts.creation);
+      return candidate.key < 0 &&
+             count(apply_creation({Operation::kCreation, candidate.key, candidate.edge},
+                                  Trials::kUntried),
+                   counts.creation);
     case Operation::kCreation:
-      return count(apply_creation(candidate), counts.creation);
+      return count(apply_creation(candidate, trial), counts.creation);
     case Operation::kAxial:
       return count(apply_axial(candidate), counts.axial);
   }
@@ -396,7 +399,9 @@ void Resolution::moved(uint32_t v) {
   involve(v);
 }
 
-bool Resolution::apply_creation(const Candidate& candidate) {
+// Where another face is as near as the mid-point's rounding, the halves may meet it.
+bool Resolution::apply_creation(const Candidate& candidate, size_t trial) {
+  if (trials_.admitted(candidate, trial) == Trials::kRefused) return false;
   moved(create_on_edge(mesh_, candidate.edge));
   return true;
 }

@@ -68,7 +68,7 @@ class Resolution {
   bool apply_deletion(const Candidate& candidate, size_t trial, OperationCounts& counts);
   bool apply_annular(const Candidate& candidate);
   bool apply_axial(const Candidate& candidate);
-  bool apply_creation(const Candidate& candidate);
+  bool apply_creation(const Candidate& candidate, size_t trial);
   // v has changed: its constraints are checked again in this pass.
   void involve(uint32_t v);
   void moved(uint32_t v);

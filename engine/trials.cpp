@@ -28,9 +28,9 @@ void include(Box3& box, const Box3& other) {
 }
 
 Proposal propose(const Mesh& mesh, const Candidate& c, uint32_t place) {
-  return c.operation == Operation::kInversion
-             ? propose_inversion(mesh, c.edge)
-             : propose_deletion(mesh, c.edge, Trials::deletion_place(mesh, c.edge, place));
+  if (c.operation == Operation::kCreation) return propose_creation(mesh, c.edge);
+  if (c.operation == Operation::kInversion) return propose_inversion(mesh, c.edge);
+  return propose_deletion(mesh, c.edge, Trials::deletion_place(mesh, c.edge, place));
 }
 
 }  // namespace
@@ -41,14 +41,14 @@ Vec3 Trials::deletion_place(const Mesh& mesh, const Edge& e, uint32_t place) {
 }
 
 bool Trials::can_try(const Mesh& mesh, const Candidate& c) {
-  if (c.operation == Operation::kInversion) return true;
+  if (c.operation == Operation::kCreation || c.operation == Operation::kInversion) return true;
   // With an apex of valence 3 it is no deletion of an edge but of a tetrahedron.
   return c.operation == Operation::kDeletion && mesh.valence(c.edge.a) > 3 &&
          mesh.valence(c.edge.b) > 3;
 }
 
 uint32_t Trials::first_admitted(const Candidate& c, EmbeddingGuard& guard, Box3* tried) const {
-  const uint32_t places = c.operation == Operation::kInversion ? 1 : kPlaces;
+  const uint32_t places = c.operation == Operation::kDeletion ? kPlaces : 1;
   for (uint32_t place = 0; place < places; ++place) {
     const bool admitted = guard.embeds(mesh_, hash_, propose(mesh_, c, place));
     if (tried != nullptr) include(*tried, guard.box());

@@ -17,8 +17,8 @@ namespace plc {
 // asked again: of what had been admitted only against the faces that have come. So admitted() says
 // what the guard would say of the mesh as it is now, whatever had been tried.
 //
-// Deletions and inversions are tried: the first place, of those that the merged vertex may have,
-// that the guard admits.
+// Creations, inversions and deletions are tried; of these the first place, of those that the merged
+// vertex may have, that the guard admits.
 class Trials {
  public:
   Trials(const Mesh& mesh, const SpatialHash& hash, const Executor& executor)
@@ -34,7 +34,7 @@ class Trials {
 
   // A new run: trial i is of candidates[i].
   void run(const Vector<const Candidate*>& candidates);
-  // The first place that the guard admits, 0 for an inversion; or kRefused. trial: of this
+  // The first place that the guard admits, 0 for all but deletions; or kRefused. trial: of this
   // candidate, or kUntried. No vertex of the candidate's footprint has changed since the run.
   uint32_t admitted(const Candidate& candidate, size_t trial);
 

@@ -40,6 +40,15 @@ inline Soup tetrahedron() {
   return m;
 }
 
+// As high as the distance between two floats there: the middle of an edge of the apex, 3, is
+// rounded into the opposite face, as are the centres of its faces.
+inline Soup flat_tetrahedron() {
+  Soup m;
+  m.xyz = {1000, 1000, 1000, 1004, 1000, 1000, 1002, 1003.5, 1000, 1002, 1001, 1000 + 0x1p-14};
+  m.abc = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+  return m;
+}
+
 // Around the z axis: vertices 0 .. n-1 of a ring of radius 1, then the apexes at -height, height.
 inline Soup bipyramid(uint32_t n, double height) {
   constexpr double kPi = 3.14159265358979323846;

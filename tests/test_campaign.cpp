@@ -43,6 +43,10 @@ constexpr uint64_t kCases = 250;
 
 // A case without a fault that gives a surface.
 constexpr uint64_t kValidSeed = 3;
+// Cases of the campaign in which something was wrong once:
+constexpr uint64_t kOnceWrong[] = {
+    1504,  // an edge was split on top of a vertex, where a face was too thin for floats
+};
 // Of what the first 200 cases are: another value means that every seed means something else.
 constexpr uint64_t kCasesHash = 0x4cc7ac908e7f0d23;
 
@@ -57,22 +61,30 @@ struct Leftovers {
 // Whether the engine would carry it out.
 bool admitted(const Mesh& mesh, const plc::SpatialHash& hash, const plc::Candidate& c) {
   const plc::Edge& e = c.edge;
+  const auto embeds = [&](const plc::Proposal& proposal) {
+    return plc::EmbeddingGuard().embeds(mesh, hash, proposal);
+  };
   switch (c.operation) {
     case Operation::kAnnular: {
       const plc::Cycle cycle{{e.u, e.v, e.a}};
       const auto copies = plc::annular_copies(mesh, cycle, plc::kAnnularRetreat);
-      return plc::EmbeddingGuard().embeds(mesh, hash, plc::propose_annular(mesh, cycle, copies));
+      return embeds(plc::propose_annular(mesh, cycle, copies));
     }
     case Operation::kDeletion:
       if (mesh.valence(e.a) == 3 || mesh.valence(e.b) == 3) return true;
       for (const plc::Vec3 place :
            {plc::midpoint(mesh.at(e.u), mesh.at(e.v)), mesh.at(e.u), mesh.at(e.v)}) {
-        if (plc::EmbeddingGuard().embeds(mesh, hash, plc::propose_deletion(mesh, e, place)))
-          return true;
+        if (embeds(plc::propose_deletion(mesh, e, place))) return true;
       }
       return false;
+    case Operation::kInversion:
+      // Where it is refused, a long edge is split.
+      return embeds(plc::propose_inversion(mesh, e)) ||
+             (c.key < 0 && embeds(plc::propose_creation(mesh, e)));
+    case Operation::kCreation:
+      return embeds(plc::propose_creation(mesh, e));
     default:
-      return true;  // a creation never makes faces meet; a refused inversion becomes one
+      return true;
   }
 }
 
@@ -295,6 +307,7 @@ TEST_CASE("cases of the campaign are valid, or refused for what is wrong, and th
           "[campaign]") {
   std::vector<uint64_t> seeds;
   for (uint64_t seed = 1; seed <= kCases; ++seed) seeds.push_back(seed);
+  seeds.insert(seeds.end(), std::begin(kOnceWrong), std::end(kOnceWrong));
   const std::vector<CaseOutcome> outcomes = run_cases(seeds);
   std::set<std::string> phantoms, inits;
   int64_t surfaces = 0;

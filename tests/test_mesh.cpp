@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
+#include "engine/constants.h"
+#include "engine/state_io.h"
 #include "pyramid/memory.h"
 #include "tests/sample_surfaces.h"
 #include "tests/sample_volumes.h"
@@ -50,6 +53,19 @@ bool slots_are_filled(const Mesh& mesh) {
     }
   }
   return true;
+}
+
+// What Mesh::restore() says of a sphere whose save was altered.
+template <typename Alter>
+bool restored(const Alter& alter) {
+  Mesh mesh;
+  samples::fill_mesh(mesh, samples::sphere(2), 0.5);
+  alter(mesh);
+  plc::StateWriter writer;
+  mesh.save(writer);
+  plc::StateReader reader(writer.bytes().data(), writer.bytes().size());
+  Mesh other;
+  return other.restore(reader) && reader.left() == 0;
 }
 
 }  // namespace
@@ -368,4 +384,15 @@ TEST_CASE("each broken invariant is named", "[mesh]") {
                m.set_ring(9, ring);
              }),
              Contains("not seen from"));
+}
+
+TEST_CASE("a saved mesh is restored unless it has values that no mesh has", "[mesh]") {
+  const float beyond = 2 * plc::kReach;
+  CHECK(restored([](Mesh&) {}));
+  CHECK_FALSE(restored([&](Mesh& m) { m.place(7, {0, beyond, 0}); }));
+  CHECK_FALSE(restored([&](Mesh& m) { m.velocity.set(7, {-beyond, 0, 0}); }));
+  CHECK_FALSE(restored([&](Mesh& m) { m.displacement.set(7, {0, 0, beyond}); }));
+  CHECK_FALSE(restored([&](Mesh& m) { m.normal.set(7, {NAN, 0, 0}); }));
+  CHECK_FALSE(restored([&](Mesh& m) { m.path[7] = HUGE_VALF; }));
+  CHECK_FALSE(restored([](Mesh& m) { m.delta = 0; }));
 }

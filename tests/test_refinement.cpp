@@ -151,6 +151,33 @@ TEST_CASE("faces that would meet after a refinement keep their old edges", "[ref
   CHECK(kept + inverted == 24);
 }
 
+TEST_CASE("a face stays whole where rounding would put its centre beyond another face",
+          "[refinement]") {
+  Mesh mesh;
+  Soup soup = samples::flat_tetrahedron();
+  soup.append(samples::moved(samples::octahedron(), 1000, 1000, 900));
+  samples::fill_mesh(mesh, soup, 1);
+  REQUIRE(samples::meeting_count(mesh) == 0);
+  plc::refine(mesh, samples::kSerial);
+  CHECK(plc::broken_invariant(mesh) == "");
+  CHECK(samples::meeting_count(mesh) == 0);
+  CHECK(mesh.slots() == mesh.vertex_count());
+  CHECK(mesh.vertex_count() < 4 + 4 + 14);
+  CHECK(mesh.vertex_count() >= 4 + 14);
+}
+
+TEST_CASE("no face is left without an area where centres are rounded onto corners",
+          "[refinement]") {
+  Mesh mesh;
+  Soup soup = samples::tetrahedron();
+  for (double& c : soup.xyz) c = 1000 + (c + 1) * 0x1p-15;  // neighbouring floats
+  samples::fill_mesh(mesh, soup, 1);
+  REQUIRE(samples::meeting_count(mesh) == 0);
+  plc::refine(mesh, samples::kSerial);
+  CHECK(plc::broken_invariant(mesh) == "");
+  CHECK(mesh.vertex_count() == 4);
+}
+
 TEST_CASE("many components, long rings and gaps in the ids are refined alike", "[refinement]") {
   Soup soup = samples::sphere(1);
   soup.append(samples::moved(samples::bipyramid(45, 1), 5, 0, 0));

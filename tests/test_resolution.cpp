@@ -209,6 +209,19 @@ TEST_CASE("violations of vertices that are not due wait", "[resolution]") {
   CHECK(plc::broken_invariant(mesh) == "");
 }
 
+TEST_CASE("long edges are not split where the halves would meet the surface", "[resolution]") {
+  Mesh mesh;
+  samples::fill_mesh(mesh, samples::flat_tetrahedron(), 0.8);
+  Resolution resolution(mesh, samples::kSerial, plc::best_simd_target());
+  resolution.restart();
+  resolution.take_due(true);
+  OperationCounts counts;
+  resolution.run(1, counts);
+  CHECK(counts.refused > 0);
+  CHECK(plc::broken_invariant(mesh) == "");
+  CHECK(samples::meeting_count(mesh) == 0);
+}
+
 TEST_CASE("what the guard refuses is counted, left as it was and stays due", "[resolution]") {
   int64_t refusals = 0;
   for (uint64_t seed = 1; seed <= 40; ++seed) {

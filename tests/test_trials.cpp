@@ -4,6 +4,7 @@
 #include <set>
 
 #include "engine/constants.h"
+#include "engine/creation.h"
 #include "engine/deletion.h"
 #include "engine/edge_constraints.h"
 #include "engine/inversion.h"
@@ -40,13 +41,15 @@ plc::SpatialHash hash_of(const Mesh& mesh) {
   return hash;
 }
 
-plc::Vector<Candidate> deletions_and_inversions(const Mesh& mesh) {
+// Deletions where edges are too short, and some inversions and creations.
+plc::Vector<Candidate> triable(const Mesh& mesh) {
   plc::Vector<Candidate> found;
   samples::for_each_edge(mesh, [&](uint32_t u, uint32_t k) {
     const plc::Edge e = plc::edge_at(mesh, u, k);
-    const Candidate inversion{Operation::kInversion, 0, e};
     if ((u + k) % 4 == 0 && plc::can_invert(mesh, e)) {
-      found.push_back(inversion);
+      found.push_back({Operation::kInversion, 0, e});
+    } else if ((u + k) % 8 == 1) {
+      found.push_back({Operation::kCreation, 0, e});
     } else if (const auto c = plc::edge_candidate(mesh, u, k); c && Trials::can_try(mesh, *c)) {
       found.push_back(*c);
     }
@@ -82,6 +85,9 @@ plc::Vector<Candidate> apart(const Mesh& mesh, const plc::Vector<Candidate>& can
 // What the guard says of the mesh as it is.
 uint32_t asked_now(const Mesh& mesh, const plc::SpatialHash& hash, const Candidate& c) {
   plc::EmbeddingGuard guard;
+  if (c.operation == Operation::kCreation) {
+    return guard.embeds(mesh, hash, plc::propose_creation(mesh, c.edge)) ? 0 : Trials::kRefused;
+  }
   if (c.operation == Operation::kInversion) {
     return guard.embeds(mesh, hash, plc::propose_inversion(mesh, c.edge)) ? 0 : Trials::kRefused;
   }
@@ -94,7 +100,11 @@ uint32_t asked_now(const Mesh& mesh, const plc::SpatialHash& hash, const Candida
 
 void apply(Mesh& mesh, plc::SpatialHash& hash, Trials& trials, const Candidate& c, uint32_t place) {
   trials.begin(footprint(mesh, c.edge));
-  if (c.operation == Operation::kInversion) {
+  if (c.operation == Operation::kCreation) {
+    const uint32_t w = plc::create_on_edge(mesh, c.edge);
+    hash.insert(w, mesh.at(w));
+    trials.changed(w);
+  } else if (c.operation == Operation::kInversion) {
     plc::invert_edge(mesh, c.edge);
     trials.changed(c.edge.a);
   } else {
@@ -118,7 +128,7 @@ TEST_CASE("a trial says what the guard says when its turn has come", "[trials]")
     int turned = 0;  // what the mesh had let through, or refused, before others were applied
     int refused = 0, elsewhere = 0;
     for (int run = 0; run < 3; ++run) {
-      const auto candidates = apart(mesh, deletions_and_inversions(mesh));
+      const auto candidates = apart(mesh, triable(mesh));
       REQUIRE(candidates.size() > 20);
       plc::Vector<const Candidate*> tried;
       plc::Vector<uint32_t> before;
@@ -151,12 +161,12 @@ TEST_CASE("what no trial is for is asked then", "[trials]") {
   const plc::SpatialHash hash = hash_of(mesh);
   Trials trials(mesh, hash, samples::kSerial);
   trials.run({});
-  for (const Candidate& c : deletions_and_inversions(mesh)) {
+  for (const Candidate& c : triable(mesh)) {
     CHECK(trials.admitted(c, Trials::kUntried) == asked_now(mesh, hash, c));
   }
 }
 
-TEST_CASE("only deletions and inversions of edges are tried", "[trials]") {
+TEST_CASE("creations, inversions and deletions of edges are tried", "[trials]") {
   Mesh mesh;
   samples::fill_mesh(mesh, samples::tetrahedron(), 10);
   const plc::Edge e = plc::edge_at(mesh, 0, 0);
@@ -165,7 +175,7 @@ TEST_CASE("only deletions and inversions of edges are tried", "[trials]") {
   const plc::Edge f = plc::edge_at(mesh, 0, 0);
   CHECK(Trials::can_try(mesh, {Operation::kDeletion, 1, f}));
   CHECK(Trials::can_try(mesh, {Operation::kInversion, 1, f}));
-  CHECK_FALSE(Trials::can_try(mesh, {Operation::kCreation, 1, f}));
+  CHECK(Trials::can_try(mesh, {Operation::kCreation, 1, f}));
   CHECK_FALSE(Trials::can_try(mesh, {Operation::kAnnular, 1, f}));
   CHECK_FALSE(Trials::can_try(mesh, {Operation::kAxial, 1, f}));
 }
