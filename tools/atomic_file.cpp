@@ -66,10 +66,15 @@ void AtomicFile::write(const void* data, size_t size) {
   }
 }
 
-void AtomicFile::commit() {
+void AtomicFile::finish() {
+  if (descriptor_ < 0) return;
   flush();
   const int descriptor = std::exchange(descriptor_, -1);
   if (close(descriptor) != 0) fail(errno);  // where some file systems report a full disk
+}
+
+void AtomicFile::commit() {
+  finish();
   if (temporary_.empty()) return;
   if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
   temporary_.clear();

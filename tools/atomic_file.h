@@ -18,6 +18,8 @@ class AtomicFile {
 
   void write(const void* data, size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
+  // All that can fail on a full disk; commit() then only renames. For files that belong together.
+  void finish();
   void commit();
 
  private:

@@ -83,6 +83,8 @@ void write_volume(const std::string& path, const plc_image& image) {
     file.write(meta_header(image, raw.filename().string()));
     AtomicFile data(raw.string());
     data.write(image.voxels, bytes);
+    data.finish();
+    file.finish();
     data.commit();
   } else {
     throw Failure{path + ": volumes are written as .nrrd, .mha or .mhd"};

@@ -1,0 +1,67 @@
+// For LD_PRELOAD: call number PELLICLE_FAIL_AT, counted from 1, of those that make, write, close or
+// rename an output file of tools/atomic_file.cpp fails as on a full disk, and so do all later
+// writes and makings; then the file PELLICLE_FAILED is made. Of a write that fails, half is written
+// before.
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+enum { kDescriptors = 1024 };
+static bool output[kDescriptors];
+static long calls;
+static bool full;
+
+static bool fails(void) {
+  const char* at = getenv("PELLICLE_FAIL_AT");
+  const char* mark = getenv("PELLICLE_FAILED");
+  if (at == NULL || mark == NULL || ++calls != atol(at)) return false;
+  full = true;
+  const long made = syscall(SYS_openat, AT_FDCWD, mark, O_CREAT | O_WRONLY, 0666);
+  if (made >= 0) syscall(SYS_close, (int)made);
+  return true;
+}
+
+static bool is_output(int descriptor) {
+  return descriptor >= 0 && descriptor < kDescriptors && output[descriptor];
+}
+
+static int no_space(void) {
+  errno = ENOSPC;
+  return -1;
+}
+
+int mkostemp(char* name, int flags) {
+  typedef int Call(char*, int);
+  if (fails() || full) return no_space();
+  const int made = ((Call*)dlsym(RTLD_NEXT, "mkostemp"))(name, flags);
+  if (made >= 0 && made < kDescriptors) output[made] = true;
+  return made;
+}
+
+ssize_t write(int descriptor, const void* data, size_t size) {
+  typedef ssize_t Call(int, const void*, size_t);
+  Call* const next = (Call*)dlsym(RTLD_NEXT, "write");
+  if (!is_output(descriptor)) return next(descriptor, data, size);
+  if (full) return no_space();
+  if (!fails()) return next(descriptor, data, size);
+  return size > 1 ? next(descriptor, data, size / 2) : no_space();
+}
+
+int close(int descriptor) {
+  typedef int Call(int);
+  const int closed = ((Call*)dlsym(RTLD_NEXT, "close"))(descriptor);
+  if (!is_output(descriptor)) return closed;
+  output[descriptor] = false;
+  return fails() ? no_space() : closed;
+}
+
+int rename(const char* from, const char* to) {
+  typedef int Call(const char*, const char*);
+  if (fails()) return no_space();
+  return ((Call*)dlsym(RTLD_NEXT, "rename"))(from, to);
+}
