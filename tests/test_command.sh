@@ -285,6 +285,20 @@ printf 'OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n' >op
 works "an open mesh" 1 "$pellicle" check open.off
 left_over >/dev/null
 
+# ---- stdout on a full disk
+full_stdout() {  # COMMAND...
+  local code=0
+  "$@" >/dev/full 2>stderr </dev/null || code=$?
+  if [ $code -ne 2 ]; then fails "$2 on a full stdout: exit code $code, not 2"; fi
+  says "$2 on a full stdout" "^pellicle: standard output: cannot be written" stderr
+}
+for arguments in --help --version "extract --xml" "check open.off" "check --json open.off" \
+  "measure points.off"; do
+  read -ra words <<<"$arguments"
+  full_stdout "$pellicle" "${words[@]}"
+done
+left_over >/dev/null
+
 # ---- Ctrl-C
 works "phantom" 0 "$pellicle" phantom sierpinski -o sponge.nrrd
 works "interrupted" 130 timeout --preserve-status -s INT 3 \

@@ -2,12 +2,15 @@
 // input, 130 interrupted. Every error is one line on stderr.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <memory>
 #include <new>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -35,6 +38,17 @@ int fail(std::string message) {
   }
   std::fprintf(stderr, "pellicle: %s\n", message.c_str());
   return kExitBad;
+}
+
+// The exit code when all that was written to stdout has to be there, too.
+int finished(int code) {
+  errno = 0;
+  std::cout.flush();
+  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();
+  if (written) return code;
+  // Where an earlier flush failed, its cause is not known any more.
+  const std::string cause = errno != 0 ? ": " + std::generic_category().message(errno) : "";
+  return fail("standard output: cannot be written" + cause);
 }
 
 class Command {
@@ -105,7 +119,7 @@ class Command {
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file too large for its limit fails as a full disk does
   try {
-    return Command().run(argc, argv);
+    return finished(Command().run(argc, argv));
   } catch (const Failure& failure) {
     return fail(failure.message);
   } catch (const std::bad_alloc&) {
