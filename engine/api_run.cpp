@@ -76,6 +76,7 @@ Status Run::prepare(std::shared_ptr<const PyramidData> pyramid, Pyramid images, 
     if (Status s = build_mask(*extras.mask, lasting, spec.start.mask); !s.ok()) return s;
   }
   given_hash_ ^= given_hash(spec);
+  if (spec.force) given_hash_ ^= static_cast<uint64_t>(extras.space) + 1;
   extras_.seeds = nullptr;
   extras_.mask = nullptr;
   extras_.mesh_xyz = nullptr;
@@ -110,6 +111,7 @@ Status Run::build_mask(const plc_image& mask, Lasting lasting, Pyramid& pyramid)
   if (!is_any_set(volume, host_->schedule)) {
     return {ErrorCode::kInvalidData, "mask: every voxel is 0"};
   }
+  volume.spacing = pyramid_->volume->view.spacing;
   given_hash_ = voxels_hash(volume, host_->schedule);
   // Clipped at 1, voxels without a sign are 0 or 1 as they are.
   if (volume.type != VoxelType::kU8 && volume.type != VoxelType::kU16) {
@@ -117,7 +119,6 @@ Status Run::build_mask(const plc_image& mask, Lasting lasting, Pyramid& pyramid)
     volume.type = VoxelType::kU8;
     volume.voxels = mask_.data();
   }
-  volume.spacing = pyramid_->volume->view.spacing;
   PyramidSpec spec = pyramid_spec(surface_->parameters);
   spec.window_low = 0;
   spec.window_high = 1;
@@ -182,9 +183,11 @@ Status Run::usable() const {
   return {};
 }
 
-// What fails, or throws, ends the run; but for what was cancelled.
+// What fails, or throws, ends the run; but for what was cancelled. All that the run keeps is of its
+// own host's memory, whatever context the call is made with.
 Status Run::guard(const std::function<Status()>& body) {
   if (Status s = usable(); !s.ok()) return s;
+  const MemoryScope scope(host_->memory);
   busy_ = failed_ = true;
   since_ = now();
   const auto end = [this](bool failed) {
@@ -220,6 +223,7 @@ plc_run_state Run::state() const {
 }
 
 std::unique_ptr<plc_surface> Run::surface() const {
+  const MemoryScope scope(host_->memory);
   auto copy = std::make_unique<plc_surface>();
   copy->host = host_;
   copy->mesh = surface_->mesh.copy();
@@ -250,6 +254,7 @@ uint64_t Run::fingerprint() const {
   if (!fingerprint_) {
     Fnv hash;
     hash.add(voxels_hash(pyramid_->volume->view, host_->schedule));
+    hash.add(frame_hash(pyramid_->volume->frame));
     hash.add(parameters_hash(surface_->parameters));
     hash.add(given_hash_);
     fingerprint_ = hash.value();

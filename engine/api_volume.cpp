@@ -5,6 +5,7 @@
 #include "engine/api_pyramid.h"
 #include "engine/blocks.h"
 #include "engine/handles.h"
+#include "pyramid/check_volume.h"
 
 namespace plc {
 
@@ -28,6 +29,10 @@ std::string dims_text(const int64_t (&dims)[3]) {
   return std::to_string(dims[0]) + " x " + std::to_string(dims[1]) + " x " +
          std::to_string(dims[2]);
 }
+
+// The longest spacing and farthest origin, mm: of these, and of voxels, products are finite floats.
+constexpr double kFarthest = 1e30;
+constexpr double kUnitTolerance = 1e-2;  // of files that round directions
 
 // Fewer bytes than 2^62: products of dims and distances between voxels fit.
 constexpr __int128 kMaxBytes = __int128{1} << 62U;
@@ -116,12 +121,13 @@ void copy_voxels(const plc_image& image, const Executor& executor, uint8_t* to) 
 
 Status check_frame(const plc_image& image) {
   for (int i = 0; i < 3; ++i) {
-    if (!(image.spacing[i] > 0) || !std::isfinite(image.spacing[i])) {
-      return {ErrorCode::kInvalidData,
-              "image: spacing " + std::to_string(image.spacing[i]) + " is not a positive length"};
+    if (!(image.spacing[i] >= 1 / kFarthest && image.spacing[i] <= kFarthest)) {
+      return {ErrorCode::kInvalidData, "image: spacing " + number_text(image.spacing[i]) +
+                                           ", expected a length from 1e-30 to 1e+30 mm"};
     }
-    if (!std::isfinite(image.origin[i])) {
-      return {ErrorCode::kInvalidData, "image: the origin is not finite"};
+    if (!(std::abs(image.origin[i]) <= kFarthest)) {
+      return {ErrorCode::kInvalidData,
+              "image: origin " + number_text(image.origin[i]) + ", expected -1e+30 to 1e+30 mm"};
     }
   }
   const double* d = image.direction;
@@ -129,6 +135,13 @@ Status check_frame(const plc_image& image) {
                      d[2] * (d[3] * d[7] - d[4] * d[6]);
   if (!(std::abs(det) > 1e-6) || !std::isfinite(det)) {
     return {ErrorCode::kInvalidData, "image: the direction cosines are singular or not finite"};
+  }
+  for (int i = 0; i < 3; ++i) {
+    const double norm = std::sqrt(d[i] * d[i] + d[3 + i] * d[3 + i] + d[6 + i] * d[6 + i]);
+    if (!(std::abs(norm - 1) <= kUnitTolerance)) {
+      return {ErrorCode::kInvalidData,
+              "image: direction cosines of length " + number_text(norm) + ", expected 1"};
+    }
   }
   return {};
 }

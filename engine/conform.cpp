@@ -11,6 +11,7 @@
 #include "engine/constants.h"
 #include "engine/creation.h"
 #include "engine/face_rings.h"
+#include "engine/initial_surface.h"
 #include "engine/mesh_invariants.h"
 #include "engine/refinement.h"
 #include "engine/resolution.h"
@@ -48,12 +49,6 @@ struct LongEdge {
     return std::tie(l.squared, r.u, r.v) < std::tie(r.squared, l.u, l.v);
   }
 };
-
-Status too_many_vertices() {
-  return {ErrorCode::kOutOfMemory, "the surface needs more than " +
-                                       std::to_string(kMaxMeshVertices) +
-                                       " vertices at this resolution"};
-}
 
 // At least so many: no face within (2) is larger than the equilateral one.
 double vertices_needed(const Mesh& mesh) {

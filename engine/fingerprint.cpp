@@ -67,6 +67,14 @@ uint64_t voxels_hash(const VolumeView& volume, const Executor& executor) {
   return hash.value();
 }
 
+uint64_t frame_hash(const Frame& frame) {
+  Fnv hash;
+  hash.add_all(frame.spacing);
+  hash.add_all(frame.origin);
+  hash.add_all(frame.direction);
+  return hash.value();
+}
+
 uint64_t parameters_hash(const plc_parameters& p) {
   Fnv hash;
   for (const double x :

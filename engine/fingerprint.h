@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/frame.h"
 #include "engine/pellicle.h"
 #include "engine/recovery.h"
 #include "pyramid/executor.h"
@@ -15,6 +16,7 @@ uint64_t words_hash(const void* data, size_t size);
 // Of the size, the spacing and the voxels. The same for any executor.
 uint64_t voxels_hash(const VolumeView& volume, const Executor& executor);
 // Of every field.
+uint64_t frame_hash(const Frame& frame);
 uint64_t parameters_hash(const plc_parameters& parameters);
 // Of seeds, start mesh, attachments and pins, and whether there is a force.
 uint64_t given_hash(const RecoverySpec& spec);

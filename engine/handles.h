@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/float_environment.h"
 #include "engine/frame.h"
 #include "engine/mesh.h"
 #include "engine/pellicle.h"
@@ -98,6 +99,7 @@ plc_status guarded(plc_context* context, Body&& body) {
   if (context == nullptr) return PLC_INVALID_ARGUMENT;
   const std::shared_ptr<Host> host = context->host;
   const MemoryScope scope(host->memory);
+  const FloatEnvironment environment;
   try {
     return report(context, body());
   } catch (const std::bad_alloc&) {

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
 
 #include "engine/constants.h"
+#include "engine/face_rings.h"
 #include "engine/mesh_append.h"
 #include "engine/refinement.h"
 
@@ -36,8 +38,13 @@ void add_icosahedron(Mesh& mesh) {
   }
 }
 
-// A sphere of radius 1 whose mean edge is at most `edge`.
-void make_sphere(Mesh& mesh, double edge, const Executor& executor) {
+// A sphere of radius 1 whose mean edge is at most `edge`; `copies` of it have to fit.
+Status make_sphere(Mesh& mesh, double edge, double copies, const Executor& executor) {
+  double vertices = 12;
+  for (double mean = kIcosahedronEdge; mean > edge; mean /= kRefinement) {
+    vertices = 3 * vertices - 4;
+    if (vertices * copies > static_cast<double>(kMaxMeshVertices)) return too_many_vertices();
+  }
   mesh.clear();
   add_icosahedron(mesh);
   mesh.delta = kIcosahedronEdge / 1.5;
@@ -49,6 +56,7 @@ void make_sphere(Mesh& mesh, double edge, const Executor& executor) {
       mesh.place(v, mesh.at(v) * (1.0F / length(mesh.at(v))));
     }
   }
+  return {};
 }
 
 // Adds a unit sphere, stretched and moved.
@@ -63,7 +71,13 @@ constexpr double kInitialEdge = 2.0;
 
 }  // namespace
 
-void make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& executor) {
+Status too_many_vertices() {
+  return {ErrorCode::kOutOfMemory, "the surface needs more than " +
+                                       std::to_string(kMaxMeshVertices) +
+                                       " vertices at this resolution"};
+}
+
+Status make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& executor) {
   // The corner of the box lies on the surface: 3 (1/r)^4 = 1.
   const double reach = std::pow(3.0, 0.25);
   double half[3];
@@ -74,7 +88,7 @@ void make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& ex
     middle[i] = (box.high[i] + box.low[i]) / 2;
     longest = std::max(longest, half[i]);
   }
-  make_sphere(mesh, kInitialEdge * delta / longest, executor);
+  if (Status s = make_sphere(mesh, kInitialEdge * delta / longest, 1, executor); !s.ok()) return s;
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     const Vec3 n = mesh.at(v);
     const double x = n.x, y = n.y, z = n.z;
@@ -85,13 +99,18 @@ void make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& ex
     mesh.wake(v);
   }
   mesh.delta = delta;
+  return {};
 }
 
-void append_bubble(Mesh& mesh, Vec3 centre, Vec3 radii, const Executor& executor) {
+Status append_bubble(Mesh& mesh, Vec3 centre, Vec3 radii, const Executor& executor) {
   const double radius = static_cast<double>(std::max({radii.x, radii.y, radii.z}));
   Mesh sphere;
-  make_sphere(sphere, kInitialEdge * mesh.delta / radius, executor);
+  if (Status s = make_sphere(sphere, kInitialEdge * mesh.delta / radius, 1, executor); !s.ok()) {
+    return s;
+  }
+  if (uint64_t{mesh.slots()} + sphere.slots() > kMaxMeshVertices) return too_many_vertices();
   append_sphere(mesh, sphere, centre, radii);
+  return {};
 }
 
 Status make_bubbles(Mesh& mesh, const Extent& box, const std::array<int, 3>& counts, double delta,
@@ -112,7 +131,10 @@ Status make_bubbles(Mesh& mesh, const Extent& box, const std::array<int, 3>& cou
     return {ErrorCode::kInvalidArgument, line};
   }
   Mesh sphere;
-  make_sphere(sphere, kInitialEdge * delta / radius, executor);
+  const double copies = static_cast<double>(counts[0]) * counts[1] * counts[2];
+  if (Status s = make_sphere(sphere, kInitialEdge * delta / radius, copies, executor); !s.ok()) {
+    return s;
+  }
   mesh.clear();
   const auto r = static_cast<float>(radius);
   for (int k = 0; k < counts[2]; ++k) {

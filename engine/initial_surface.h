@@ -9,6 +9,11 @@
 
 namespace plc {
 
+// kOutOfMemory: more than a mesh can have.
+Status too_many_vertices();
+
+// Each of these fails so before it takes memory for them.
+
 // A box of mesh space.
 struct Extent {
   std::array<double, 3> low{}, high{};
@@ -18,11 +23,11 @@ struct Extent {
 // as 3.46 (embedding_guard.h); the first iteration splits what violates (2). An icosahedron refined
 // by (3.4) onto |x/a|^4 + |y/b|^4 + |z/c|^4 = 1, which circumscribes the box and wastes less room
 // than the ellipsoid does. mesh.delta = delta.
-void make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& executor);
+Status make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& executor);
 
 // Adds an ellipsoid with edges of 1 to 2 delta to the mesh, which keeps its delta. The caller sees
 // to it that it is apart from the rest by (3).
-void append_bubble(Mesh& mesh, Vec3 centre, Vec3 radii, const Executor& executor);
+Status append_bubble(Mesh& mesh, Vec3 centre, Vec3 radii, const Executor& executor);
 
 // counts[0] x counts[1] x counts[2] spheres over the box, apart from each other by (3).
 // kInvalidArgument when they would be too small for delta.

@@ -17,6 +17,8 @@ namespace plc {
 
 namespace {
 
+constexpr double kSeedReach = 4;
+
 const PyramidLevel& image_of(const LevelImage& level) {
   return level.pyramid.levels[static_cast<size_t>(level.h)];
 }
@@ -110,6 +112,23 @@ Ellipsoid ellipsoid_of(const Seed& seed, const MeshSpace& space) {
   return {scaled(seed.centre), scaled(seed.radii)};
 }
 
+// Whether it leads beyond the image by no more than kSeedReach diagonals of that: what is farther
+// only takes memory.
+bool within_reach(const Seed& seed, const MeshSpace& space, const Extent& image) {
+  double squared_diagonal = 0;
+  for (size_t a = 0; a < 3; ++a) {
+    squared_diagonal += (image.high[a] - image.low[a]) * (image.high[a] - image.low[a]);
+  }
+  const double room = kSeedReach * std::sqrt(squared_diagonal);
+  for (size_t a = 0; a < 3; ++a) {
+    const double centre = seed.centre[a] * space.step[a];
+    const double radius = seed.radii[a] * space.step[a];
+    if (!(centre - radius >= image.low[a] - room)) return false;
+    if (!(centre + radius <= image.high[a] + room)) return false;
+  }
+  return true;
+}
+
 // Whether two ellipsoids with parallel axes may be nearer than `gap`: grown by half of it, the
 // Minkowski sum of both lies within the ellipsoid of the summed radii.
 bool near(const Ellipsoid& a, const Ellipsoid& b, float gap) {
@@ -122,8 +141,12 @@ Status make_seeds(const StartSpec& spec, const LevelImage& level, double delta,
                   const Executor& executor, Mesh& mesh) {
   const auto unit = static_cast<float>(delta);
   mesh.delta = delta;
+  const Extent image = image_extent(level);
   Vector<Ellipsoid> made;
   for (const Seed& seed : spec.seeds) {
+    if (!within_reach(seed, level.space, image)) {
+      return {ErrorCode::kInvalidArgument, name_of(seed) + ": leads too far beyond the image"};
+    }
     const Ellipsoid e = ellipsoid_of(seed, level.space);
     if (std::min({e.radii.x, e.radii.y, e.radii.z}) < kSmallestBubble * unit) {
       char line[120];
@@ -141,7 +164,7 @@ Status make_seeds(const StartSpec& spec, const LevelImage& level, double delta,
       }
     }
     made.push_back(e);
-    append_bubble(mesh, e.centre, e.radii, executor);
+    if (Status s = append_bubble(mesh, e.centre, e.radii, executor); !s.ok()) return s;
   }
   return {};
 }
@@ -173,7 +196,7 @@ Status start_surface(const StartSpec& spec, const LevelImage& level, double delt
     case Init::kBubble:
       if (std::isnan(level.iso)) box = image_extent(level);
       if (std::isnan(level.iso) || object_extent(level, schedule, box))
-        make_bubble(mesh, box, delta, schedule);
+        return make_bubble(mesh, box, delta, schedule);
       return {};
     case Init::kBubbles:
       return make_bubbles(mesh, image_extent(level), spec.bubbles, delta, schedule);

@@ -8,19 +8,24 @@
  *   plc_volume_create, plc_pyramid_create, plc_run_create  the same in steps of any size
  *
  * Errors: every function that can fail returns a plc_status; plc_context_message() then says in
- * one line what was wrong. No function exits, prints, throws, or changes the locale, the
- * floating-point environment or signals. NULL where it must not be is PLC_INVALID_ARGUMENT. After a
+ * one line what was wrong. No function exits, prints, throws, or changes the locale or signals. All
+ * compute, and make callbacks, in the default floating-point environment, and leave the caller's as
+ * it was. NULL where it must not be is PLC_INVALID_ARGUMENT. After a
  * failed call its outputs are unchanged or, where they are handles, NULL; every handle can still be
  * used or destroyed.
  *
  * Threads: a context, and what was made with it, may be used by one thread at a time; different
  * contexts are independent and share nothing. Callbacks are made on the thread that called, but for
  * those of plc_context_options, which say so. A callback may use any handle but a run that is in
- * the middle of a call.
+ * the middle of a call. It must not destroy the context of the call or the handles that were given
+ * to it, nor leave it by an exception or longjmp. Callbacks can stop what evolves a surface; making
+ * volumes, pyramids, runs and surfaces, and checking and measuring, cannot be stopped.
  *
  * Structs start with struct_size: fill them with their _defaults function, then change fields. For
  * structs that are only written set struct_size = sizeof. A library newer than the header that a
- * host was built with takes what it does not get at its default.
+ * host was built with takes what it does not get at its default; one that is older refuses the
+ * struct with PLC_INVALID_ARGUMENT. Structs within others and in arrays will not grow:
+ * plc_measures, plc_progress, plc_component_measures, plc_seed, plc_attachment, plc_pin.
  *
  * Handles are freed with their _destroy function, which takes NULL, in any order: what a handle
  * needs of others it keeps alive. What a host lends - voxels, allocator, threads, log - must
@@ -139,8 +144,8 @@ PLC_API void plc_context_options_defaults(plc_context_options* options);
 PLC_API plc_status plc_context_create(const plc_context_options* options, plc_context** context,
                                       char* error, size_t error_size);
 PLC_API void plc_context_destroy(plc_context* context);
-/* The message of the last call on this context that failed; "" when none, or for NULL. Valid until
- * the next call on the context. */
+/* What was wrong with the last call on this context; "" where it succeeded, when there was none,
+ * and for NULL. Valid until the next call on the context. */
 PLC_API const char* plc_context_message(const plc_context* context);
 /* The number of threads that loops may run on (0 with parallel_for: the host knows) and the SIMD
  * target in use ("scalar", "sse4", "avx2", "avx512"). 0 and "" for NULL. */
@@ -159,11 +164,12 @@ typedef struct plc_image {
   const void* voxels; /* dims[0] * dims[1] * dims[2] values, aligned as their type */
   int64_t dims[3];    /* each >= 2 */
   int64_t strides[3]; /* bytes from a voxel to the next one on each axis, multiples of its size, may
-                         be negative or leave gaps; all 0: x fastest, no gaps, which is the only
-                         layout that needs no copy */
-  double spacing[3];  /* mm between voxel centres, > 0 */
-  double origin[3];   /* LPS position of the centre of voxel (0,0,0), mm */
-  double direction[9]; /* row-major, columns are the unit axes of the image in LPS (as ITK) */
+                         be negative, leave gaps, or be 0 on some axes, along which values then
+                         repeat; all 0: x fastest, no gaps */
+  double spacing[3];  /* mm between voxel centres, 1e-30 .. 1e30 */
+  double origin[3];   /* LPS position of the centre of voxel (0,0,0), mm, at most 1e30 */
+  double direction[9]; /* row-major, columns are the axes of the image in LPS (as ITK): of length 1
+                          within 1 %, not in a plane */
 } plc_image;
 
 /* Spacing 1, origin 0, identity direction, no gaps, no voxels. */
@@ -173,9 +179,9 @@ PLC_API void plc_image_defaults(plc_image* image);
  * nor go while the volume, a pyramid or a run of it is there. */
 typedef enum plc_ownership { PLC_COPY = 0, PLC_BORROW = 1 } plc_ownership;
 
-/* PLC_INVALID_DATA: dims below 2 or of 2^62 bytes or more, spacing that is not positive, an origin
- * that is not finite, singular directions. NaN voxels are told by plc_pyramid_create. PLC_BORROW
- * with strides copies. */
+/* PLC_INVALID_DATA: dims below 2 or of 2^62 bytes or more, spacing, origin or direction out of
+ * range. NaN voxels are told by plc_pyramid_create. Voxels are borrowed where x is fastest and
+ * there are no gaps, whether strides say so or are 0; with any others PLC_BORROW copies. */
 PLC_API plc_status plc_volume_create(plc_context* context, const plc_image* image,
                                      plc_ownership ownership, plc_volume** volume);
 PLC_API void plc_volume_destroy(plc_volume* volume);
@@ -288,7 +294,7 @@ typedef struct plc_progress {
   double energy;   /* kinetic energy along the normals, in m (delta / dt)^2 (5.1) */
   double speed;    /* of the fastest vertex, in delta per time */
   double fraction; /* an estimate of what is done, 0 .. 1, never falling */
-  double seconds;  /* since the start of the call */
+  double seconds;  /* of evolution so far; of a run, within all calls on it */
 } plc_progress;
 
 /* Called on the calling thread after every iteration. Return 0 to go on, any other to cancel. */
@@ -328,13 +334,13 @@ typedef struct plc_force_points {
  * lives in voxels but forces are given in mm, that is so on the axes of the finest spacing, and
  * less on the others, whose voxels are longer. Four calls per iteration, or more with
  * PLC_BOUND_SCALE, all on the calling thread. Return 0 to go on, any other to cancel. A force that
- * is not finite ends the call with PLC_INVALID_ARGUMENT. */
+ * is not finite, or above 1e6, ends the call with PLC_INVALID_ARGUMENT. */
 typedef int (*plc_force_fn)(const plc_force_points* points, float* forces, void* user);
 
 typedef struct plc_level_report plc_level_report;
 
 typedef enum plc_verdict {
-  PLC_VERDICT_ACCEPT = 0, /* on to the next level */
+  PLC_VERDICT_ACCEPT = 0, /* on to the next level, as any value but these */
   PLC_VERDICT_MORE = 1,   /* up to max_iterations more on this level */
   PLC_VERDICT_STOP = 2,   /* the surface as it is is the result */
   PLC_VERDICT_CANCEL = 3  /* PLC_CANCELLED; a run that goes on asks again */
@@ -355,7 +361,8 @@ typedef struct plc_extras {
   plc_force_fn force;
   void* force_user;
   plc_space space;       /* of all places below and of force */
-  const plc_seed* seeds; /* PLC_INIT_SEEDS: apart from each other, 1.15 delta or more in radius */
+  const plc_seed* seeds; /* PLC_INIT_SEEDS: apart from each other, 1.15 delta or more in radius;
+                            none beyond the image by four diagonals of that */
   int64_t seed_count;
   const plc_image* mask;  /* PLC_INIT_MASK: as many voxels as the image; where not 0: the object */
   const double* mesh_xyz; /* PLC_INIT_MESH: closed, oriented, embedded; 3 * mesh_vertex_count */
@@ -384,7 +391,8 @@ PLC_API plc_status plc_extract(plc_context* context, const plc_image* image,
  * pi_I on them. Reads of the parameters all up to `reduction`, and derives what they leave open.
  * The volume may be destroyed afterwards; where it borrows, its voxels must stay. May be used for
  * any number of runs, of any contexts, at the same time. PLC_INVALID_DATA: NaN or infinite voxels,
- * an image too small for the levels or of 2^31 voxels or more on a padded level, ... */
+ * an image of 2^31 voxels or more on a padded level, ...; PLC_INVALID_ARGUMENT: more levels than
+ * the image has voxels for, iso out of its range, ... */
 PLC_API plc_status plc_pyramid_create(plc_context* context, const plc_volume* volume,
                                       const plc_parameters* parameters, plc_pyramid** pyramid);
 PLC_API void plc_pyramid_destroy(plc_pyramid* pyramid);
@@ -463,8 +471,9 @@ PLC_API plc_status plc_run_surface(plc_context* context, const plc_run* run, plc
 PLC_API plc_status plc_run_save(plc_context* context, const plc_run* run, void* state,
                                 size_t capacity, size_t* size);
 /* A run that goes on from a saved state, with the bits that the saved one would have gone on to.
- * pyramid, parameters and extras: equal to those of the saved run, callbacks aside; the mask is
- * needed where init is PLC_INIT_MASK. PLC_INVALID_DATA where the bytes are no state of a run, of
+ * pyramid, its frame included, parameters and extras: equal to those of the saved run, callbacks
+ * aside, but with a force where that had one, in the same space; the mask is needed where init is
+ * PLC_INIT_MASK. PLC_INVALID_DATA where the bytes are no state of a run, of
  * another version, truncated or altered, or of another pyramid, parameters or extras. */
 PLC_API plc_status plc_run_restore(plc_context* context, const plc_pyramid* pyramid,
                                    const plc_parameters* parameters, const plc_extras* extras,
@@ -480,7 +489,7 @@ PLC_API void plc_surface_destroy(plc_surface* surface);
  * face_count indices, counter-clockwise seen from outside in it. image: where the mesh lies - its
  * dims and voxels are not read; NULL: spacing 1, origin 0, identity. Coordinates are rounded to
  * floats of voxels; vertices without a face are dropped, others keep their order; the surface has
- * no levels. As the start of a run: PLC_INIT_MESH. */
+ * no levels, and parameters, range and seconds of 0. As the start of a run: PLC_INIT_MESH. */
 PLC_API plc_status plc_surface_create(plc_context* context, plc_space space, const plc_image* image,
                                       const double* xyz, int64_t vertex_count, const uint32_t* abc,
                                       int64_t face_count, plc_surface** surface);
@@ -599,7 +608,8 @@ struct plc_check {
 };
 
 /* xyz: 3 * vertex_count finite values; abc: 3 * face_count indices below vertex_count. Predicates
- * are exact. PLC_INVALID_DATA where an index or a value is out of range; an invalid mesh is PLC_OK
+ * are exact. The faces around one vertex are compared each with each: a million of them would take
+ * hours. PLC_INVALID_DATA where an index or a value is out of range; an invalid mesh is PLC_OK
  * with check->valid == 0. */
 PLC_API plc_status plc_check_mesh(plc_context* context, const double* xyz, int64_t vertex_count,
                                   const uint32_t* abc, int64_t face_count, plc_check* check);
@@ -667,8 +677,9 @@ PLC_API plc_status plc_mesh_nearest_vertex(plc_context* context, const double* x
 
 /* The length of the shortest path over the faces from vertex source, 0 .. vertex_count - 1, to each
  * vertex: exact for the polyhedron but for rounding (about 1e-12 of it). distance: vertex_count
- * values; INFINITY where no path leads. Paths cross borders nowhere and edges of any number of
- * faces. The time grows like vertex_count^1.5 on usual meshes; one thread. */
+ * values; INFINITY where no path leads. Where lengths differ by so much that sums lose the short
+ * ones, some may be those of a path that is not the shortest. Paths cross borders nowhere and edges
+ * of any number of faces. The time grows like vertex_count^1.5 on usual meshes; one thread. */
 PLC_API plc_status plc_mesh_geodesic(plc_context* context, const double* xyz, int64_t vertex_count,
                                      const uint32_t* abc, int64_t face_count, int64_t source,
                                      double* distance);

@@ -213,6 +213,10 @@ Status Recovery::iterate() {
   estimate_progress();
   renumber_if_scattered();
   if (r.converged || round_.iteration >= spec_.max_iterations) phase_ = Phase::kCheck;
+  return told();
+}
+
+Status Recovery::told() const {
   if (hooks_.progress && !hooks_.progress(progress_)) return {ErrorCode::kCancelled, "cancelled"};
   return {};
 }
@@ -239,7 +243,7 @@ Status Recovery::verify() {
     return s;
   }
   ++round_.repairs;
-  return {};
+  return told();
 }
 
 Status Recovery::end_round() {

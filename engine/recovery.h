@@ -143,6 +143,7 @@ class Recovery {
   Status ask_verdict();
   Status leave_level();
   Status add_late_bubbles(bool& added);
+  Status told() const;  // the user, of the last iteration
   bool confirmed(int calm);
   bool restore_tried(StateReader& from);
   void renumber();

@@ -85,15 +85,21 @@ bool Recovery::restore(StateReader& from) {
   visit_progress(progress_, read);
   uint32_t records = 0;
   read(records);
-  from.demand(level_ >= 0 && level_ <= levels_ && entered_ >= level_ && entered_ <= levels_ &&
-              records >= 1 && records <= static_cast<uint32_t>(levels_) + 1);
+  // The level that is next has no record yet.
+  const int next = phase_ == Phase::kStart && !done_ ? 1 : 0;
+  from.demand(level_ >= 0 && level_ <= levels_ && entered_ == level_ + next &&
+              static_cast<int64_t>(records) == levels_ - level_ + 1 - next && records >= 1);
   if (!from.ok()) return false;
   records_.resize(records);
-  for (LevelRecord& r : records_) visit_record(r, read);
+  for (LevelRecord& r : records_) {
+    visit_record(r, read);
+    from.demand(r.level == levels_ - static_cast<int>(&r - records_.data()));
+  }
   mesh_.clear();
   enter(entered_);
   if (!restore_tried(from) || !mesh_.restore(from)) return false;
   if (mesh_.vertex_count() != 0 && mesh_.delta != delta_of(entered_)) return false;
+  if ((done_ || phase_ == Phase::kVerdict) && !mesh_.in_order()) return false;
   evolution_.restore(from);
   if (!from.ok()) return false;
   if (!meeting_faces(mesh_, schedule_).empty()) return false;

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "engine/float_environment.h"
 #include "engine/task_threads.h"
 #include "pyramid/memory.h"
 
@@ -94,6 +95,7 @@ void Schedule::run(size_t tasks, const std::function<void(size_t)>& body) const 
 void Schedule::run_parallel(size_t tasks, const std::function<void(size_t)>& body) const {
   if (threads_.parallel_for != nullptr) {
     const auto task = [](size_t i, void* data) {
+      const FloatEnvironment environment;
       (*static_cast<const std::function<void(size_t)>*>(data))(i);
     };
     threads_.parallel_for(tasks, task, const_cast<std::function<void(size_t)>*>(&body),
@@ -101,8 +103,13 @@ void Schedule::run_parallel(size_t tasks, const std::function<void(size_t)>& bod
     return;
   }
   if (PLC_TASK_THREADS != 0) return run_on_task_threads(threads(), tasks, body);
+  // Of no group of the caller's: that one may be cancelled, and its loops then do nothing. Tasks
+  // compute as this thread does.
+  using Group = oneapi::tbb::task_group_context;
+  Group group(Group::isolated, Group::default_traits | Group::fp_settings);
   const auto loop = [&] {
-    oneapi::tbb::parallel_for(size_t{0}, tasks, [&](size_t i) { body(i); });
+    oneapi::tbb::parallel_for(
+        size_t{0}, tasks, [&](size_t i) { body(i); }, group);
   };
   if (arena_ != nullptr) {
     arena_->tbb.execute(loop);

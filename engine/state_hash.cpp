@@ -12,11 +12,13 @@ uint64_t state_hash(const Mesh& mesh) {
     for (const float c : {p.x, p.y, p.z}) hash.add(c);
   }
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
-    const Neighbors ring = mesh.ring(v);
-    hash.add(ring.size());
-    const auto first =
-        static_cast<uint32_t>(std::min_element(ring.begin(), ring.end()) - ring.begin());
-    for (uint32_t k = 0; k < ring.size(); ++k) hash.add(ring[(first + k) % ring.size()]);
+    const uint32_t d = mesh.valence(v);
+    hash.add(d);
+    uint32_t first = 0;
+    for (uint32_t k = 1; k < d; ++k) {
+      if (mesh.neighbor(v, k) < mesh.neighbor(v, first)) first = k;
+    }
+    for (uint32_t k = 0; k < d; ++k) hash.add(mesh.neighbor(v, (first + k) % d));
   }
   return hash.value();
 }

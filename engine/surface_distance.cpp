@@ -99,26 +99,23 @@ Sums surface_sums(const MeshArrays& mesh, const NearestFace& other, const double
 plc_distances surface_distances(const MeshArrays& mesh, const MeshArrays& other,
                                 const Executor& executor, double* distance) {
   const NearestFace nearest(other, executor);
-  Vector<double> own;
-  if (distance == nullptr) {
-    own.resize(mesh.vertex_count);
-    distance = own.data();
-  }
+  Vector<double> at(mesh.vertex_count);
   run_blocks(executor, mesh.vertex_count, kBlock, [&](size_t, size_t begin, size_t end) {
-    for (size_t v = begin; v < end; ++v) distance[v] = nearest.distance(mesh.xyz + 3 * v);
+    for (size_t v = begin; v < end; ++v) at[v] = nearest.distance(mesh.xyz + 3 * v);
   });
-  const Sums sums = surface_sums(mesh, nearest, distance, executor);
+  const Sums sums = surface_sums(mesh, nearest, at.data(), executor);
   plc_distances d{sizeof(plc_distances), kNan, kNan, kNan, kNan, kNan};
   if (mesh.vertex_count > 0) {
-    d.vertex_mean = std::accumulate(distance, distance + mesh.vertex_count, 0.0) /
-                    static_cast<double>(mesh.vertex_count);
-    d.vertex_max = *std::max_element(distance, distance + mesh.vertex_count);
+    d.vertex_mean =
+        std::accumulate(at.begin(), at.end(), 0.0) / static_cast<double>(mesh.vertex_count);
+    d.vertex_max = *std::max_element(at.begin(), at.end());
     d.max = std::max(d.vertex_max, sums.max);
   }
   if (sums.area > 0) {
     d.mean = sums.distance / sums.area;
     d.rms = std::sqrt(sums.squared / sums.area);
   }
+  if (distance != nullptr) std::copy(at.begin(), at.end(), distance);
   return d;
 }
 

@@ -63,6 +63,12 @@ inline plc::Guide guide_of(const Image& image) {
   return guide;
 }
 
+inline void require(const plc::Status& status) {
+  if (status.ok()) return;
+  std::cerr << "bench_mesh: " << status.message() << '\n';
+  std::exit(1);
+}
+
 // About 100,000 vertices in Morton order, moving: balls too large for the image that have shrunk
 // towards it for 60 iterations, so that rings have the valences of an evolution. `shrink` > 1 gives
 // about shrink^2 fewer vertices.
@@ -75,17 +81,15 @@ inline plc::Mesh evolved_mesh(const Image& image, double shrink = 1) {
     float centre[3];
     for (int a = 0; a < 3; ++a) centre[a] = (static_cast<float>(at[a]) + 0.5F) * Image::pitch(a);
     constexpr float kStart = 1.35F * Image::kRadius;
-    plc::append_bubble(mesh, {centre[0], centre[1], centre[2]}, {kStart, kStart, kStart}, schedule);
+    require(plc::append_bubble(mesh, {centre[0], centre[1], centre[2]}, {kStart, kStart, kStart},
+                               schedule));
   }
   plc::Evolution evolution(mesh, schedule, plc::best_simd_target(), plc::Model());
   plc::Seconds seconds;
   plc::OperationCounts counts;
   evolution.restart();
   for (int i = 0; i < 60; ++i) {
-    if (const plc::Status s = evolution.iterate(guide_of(image), seconds, counts); !s.ok()) {
-      std::cerr << "bench_mesh: " << s.message() << '\n';
-      std::exit(1);
-    }
+    require(evolution.iterate(guide_of(image), seconds, counts));
   }
   mesh.renumber(plc::morton_order(mesh));
   return mesh;

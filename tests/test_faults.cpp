@@ -212,7 +212,8 @@ TEST_CASE("measures and checks of a mesh survive every allocation that fails", "
   const std::vector<uint32_t> abc = samples::faces(surface.get(), PLC_SPACE_LPS);
   const auto vertices = static_cast<int64_t>(xyz.size() / 3);
   const auto faces = static_cast<int64_t>(abc.size() / 3);
-  std::vector<double> values(xyz.size());
+  constexpr double kUntouched = -7;
+  std::vector<double> values(xyz.size(), kUntouched);
   plc_context* c = context.get();
   using Call = std::function<plc_status()>;
   const std::vector<Call> calls = {
@@ -251,7 +252,20 @@ TEST_CASE("measures and checks of a mesh survive every allocation that fails", "
                                    reinterpret_cast<float*>(values.data()), vertices);
       },
   };
-  for (const Call& call : calls) CHECK(fail_in_turn(call).failures > 0);
+  for (const Call& call : calls) {
+    int64_t touched = 0;  // by calls that failed
+    const Tried tried = fail_in_turn([&] {
+      const plc_status status = call();
+      if (status != PLC_OK) {
+        touched += std::count_if(values.begin(), values.end(),
+                                 [](double value) { return value != kUntouched; });
+      }
+      std::fill(values.begin(), values.end(), kUntouched);
+      return status;
+    });
+    CHECK(tried.failures > 0);
+    CHECK(touched == 0);
+  }
 }
 
 TEST_CASE("a context that cannot be made for want of memory says so", "[faults]") {

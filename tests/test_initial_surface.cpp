@@ -38,7 +38,7 @@ TEST_CASE("a bubble is one closed sphere through the corners of the box", "[init
                             Extent{{-30, -4, 100}, {30, 4, 110}}}) {
     for (const double delta : {0.5, 0.83, 2.0}) {
       Mesh mesh;
-      plc::make_bubble(mesh, box, delta, samples::kSerial);
+      REQUIRE(plc::make_bubble(mesh, box, delta, samples::kSerial).ok());
       REQUIRE(plc::broken_invariant(mesh) == "");
       CHECK(mesh.delta == delta);
       CHECK(samples::euler(mesh) == 2);
@@ -66,7 +66,7 @@ TEST_CASE("a bubble is one closed sphere through the corners of the box", "[init
 TEST_CASE("a bubble's edges fit delta", "[initial_surface]") {
   for (double delta = 0.3; delta < 3; delta *= 1.1) {
     Mesh mesh;
-    plc::make_bubble(mesh, {{-8, -8, -8}, {8, 8, 8}}, delta, samples::kSerial);
+    REQUIRE(plc::make_bubble(mesh, {{-8, -8, -8}, {8, 8, 8}}, delta, samples::kSerial).ok());
     const Edges e = edges_of(mesh);
     CAPTURE(delta, e.shortest, e.longest);
     CHECK(e.mean > 1);
@@ -79,7 +79,7 @@ TEST_CASE("a flat or tiny box gets a bubble with room inside", "[initial_surface
   for (const Extent& box : {Extent{{0, 0, 0}, {20, 20, 0}}, Extent{{3, 3, 3}, {3, 3, 3}},
                             Extent{{0, 0, 0}, {0, 0, 15}}}) {
     Mesh mesh;
-    plc::make_bubble(mesh, box, 1, samples::kSerial);
+    REQUIRE(plc::make_bubble(mesh, box, 1, samples::kSerial).ok());
     REQUIRE(plc::broken_invariant(mesh) == "");
     CHECK(samples::meeting_count(mesh) == 0);
     CHECK(samples::volume(mesh) > 8);
@@ -90,7 +90,7 @@ TEST_CASE("a bubble replaces what was in the mesh", "[initial_surface]") {
   Mesh mesh;
   samples::fill_mesh(mesh, samples::torus(20, 10, 3, 1), 1);
   mesh.destroy(4);
-  plc::make_bubble(mesh, {{0, 0, 0}, {9, 9, 9}}, 1, samples::kSerial);
+  REQUIRE(plc::make_bubble(mesh, {{0, 0, 0}, {9, 9, 9}}, 1, samples::kSerial).ok());
   CHECK(plc::broken_invariant(mesh) == "");
   CHECK(samples::euler(mesh) == 2);
   CHECK(mesh.slots() == mesh.vertex_count());
@@ -131,4 +131,19 @@ TEST_CASE("bubbles that would be too small for delta are refused with their numb
   CHECK(status.code() == plc::ErrorCode::kInvalidArgument);
   CHECK_THAT(status.message(), Catch::Matchers::Contains("bubbles 5 x 6 x 5") &&
                                    Catch::Matchers::Contains("too small"));
+}
+
+TEST_CASE("a start of more vertices than a mesh can have is refused before it takes memory",
+          "[initial_surface]") {
+  Mesh mesh;
+  const plc::Extent box{{0, 0, 0}, {100, 100, 100}};
+  CHECK(plc::make_bubble(mesh, box, 1e-4, samples::kSerial).code() == plc::ErrorCode::kOutOfMemory);
+  CHECK(plc::make_bubbles(mesh, box, {256, 256, 256}, 1e-3, samples::kSerial).code() ==
+        plc::ErrorCode::kOutOfMemory);
+  mesh.delta = 1;
+  for (const float radius : {1e7F, HUGE_VALF}) {
+    CHECK(plc::append_bubble(mesh, {0, 0, 0}, {radius, radius, radius}, samples::kSerial).code() ==
+          plc::ErrorCode::kOutOfMemory);
+  }
+  CHECK(mesh.slots() == 0);
 }

@@ -168,10 +168,18 @@ TEST_CASE("an image that cannot be used is refused in words", "[pellicle]") {
   }
   for (const double spacing : {0.0, -1.0, kNan, HUGE_VAL}) {
     CHECK_THAT(failure(PLC_INVALID_DATA, [&](plc_image& i) { i.spacing[2] = spacing; }),
-               Contains("spacing") && Contains("not a positive length"));
+               Contains("spacing") && Contains("expected a length from 1e-30"));
   }
   CHECK_THAT(failure(PLC_INVALID_DATA, [](plc_image& i) { i.origin[0] = kNan; }),
-             Contains("origin is not finite"));
+             Contains("origin nan"));
+  for (const double spacing : {1e-31, 1e31}) {
+    CHECK_THAT(failure(PLC_INVALID_DATA, [&](plc_image& i) { i.spacing[1] = spacing; }),
+               Contains("spacing"));
+  }
+  CHECK_THAT(failure(PLC_INVALID_DATA, [](plc_image& i) { i.origin[2] = -1e31; }),
+             Contains("origin -1e+31"));
+  CHECK_THAT(failure(PLC_INVALID_DATA, [](plc_image& i) { i.direction[4] = 1.1; }),
+             Contains("direction cosines of length 1.1, expected 1"));
   CHECK_THAT(failure(PLC_INVALID_DATA, [](plc_image& i) { i.direction[4] = 0; }),
              Contains("direction cosines are singular"));
   for (const double cosine : {kNan, HUGE_VAL}) {

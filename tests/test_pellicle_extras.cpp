@@ -270,6 +270,10 @@ TEST_CASE("places and radii that cannot be are refused by number", "[pellicle]")
   CHECK_THAT(seeds({{9, 9, 9}, kNan}), Contains("seed 1: radius"));
   CHECK_THAT(seeds({{9, 9, 9}, kInfinity}), Contains("seed 1: radius"));
   CHECK_THAT(seeds({{9, 9, 9}, 0.1}), Contains("too small for level 0"));
+  for (const plc_seed& far :
+       {plc_seed{{9, 9, 9}, 1e300}, plc_seed{{1e30, 9, 9}, 2}, plc_seed{{9, 9, 9}, 3000}}) {
+    CHECK_THAT(seeds(far), Contains("beyond the image"));
+  }
   CHECK_THAT(seeds({{9, 9, 9}, 3}), Contains("touches the seed at voxel"));
 
   const auto pin = [](const plc_pin& one) {

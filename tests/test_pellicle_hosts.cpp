@@ -1,10 +1,14 @@
 // What a host lends to a context: threads, memory, an ear for what the engine has to say.
+#include <oneapi/tbb/parallel_for.h>
+
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <cfenv>
 #include <cstdlib>
 #include <functional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "engine/pellicle.h"
@@ -218,4 +222,51 @@ TEST_CASE("a host that was built with an older header gets the rest at its defau
   CHECK(used.struct_size == offsetof(plc_parameters, sleeping));
   CHECK(used.curvature == p.curvature);
   CHECK(used.sleeping == 77);
+}
+
+TEST_CASE("loops run whole where the host has cancelled the task that called", "[pellicle_hosts]") {
+  const Job job;
+  const Context context = context_of([](plc_context_options& options) { options.threads = 0; });
+  const uint64_t expected = job.hash(samples::make_context(1).get());
+  uint64_t hash = 0;
+  oneapi::tbb::task_group_context group;
+  oneapi::tbb::parallel_for(
+      0, 1,
+      [&](int) {
+        group.cancel_group_execution();
+        hash = job.hash(context.get());
+      },
+      group);
+  CHECK(hash == expected);
+}
+
+TEST_CASE("results do not depend on how the host's threads compute, which is left as it was",
+          "[pellicle_hosts]") {
+  const Job job;
+  const uint64_t expected = job.hash(samples::make_context(1).get());
+  Pool pool;
+  const Context lent = context_of([&](plc_context_options& options) {
+    options.parallel_for = [](size_t tasks, plc_task_fn task, void* data, void* user) {
+      // Those of a host differ from each other.
+      std::pair<plc_task_fn, void*> whole(task, data);
+      const auto rounded = [](size_t i, void* its) {
+        const auto& [run, of_run] = *static_cast<std::pair<plc_task_fn, void*>*>(its);
+        const int before = std::fegetround();
+        std::fesetround(i % 2 == 0 ? FE_TOWARDZERO : FE_UPWARD);
+        run(i, of_run);
+        std::fesetround(before);
+      };
+      samples::run_on_threads(tasks, rounded, &whole, user);
+    };
+    options.parallel_for_user = &pool;
+  });
+  const Context own = samples::make_context(2);
+  for (plc_context* context : {own.get(), lent.get()}) {
+    std::fesetround(FE_DOWNWARD);
+    const uint64_t hash = job.hash(context);
+    const int rounding = std::fegetround();
+    std::fesetround(FE_TONEAREST);
+    CHECK(rounding == FE_DOWNWARD);
+    CHECK(hash == expected);
+  }
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/fingerprint.h"
 #include "engine/pellicle.h"
 #include "tests/sample_api.h"
 #include "tests/sample_hosts.h"
@@ -253,6 +254,15 @@ TEST_CASE("a state that is none, or of something else, is refused in words", "[p
   changed.volume.values[1000] += 0.001F;
   const Pyramid of_changed = pyramid_of(context.get(), changed.image, s.parameters);
   CHECK(refused(state, of_changed.get(), s.parameters) == other);
+  Scene moved;
+  moved.image.origin[0] += 1000;
+  const Pyramid of_moved = pyramid_of(context.get(), moved.image, s.parameters);
+  CHECK(refused(state, of_moved.get(), s.parameters) == other);
+  Scene turned;
+  const double quarter[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+  std::copy(quarter, quarter + 9, turned.image.direction);
+  const Pyramid of_turned = pyramid_of(context.get(), turned.image, s.parameters);
+  CHECK(refused(state, of_turned.get(), s.parameters) == other);
   plc_extras extras = samples::no_extras();
   const plc_pin pin{{0, 0, 0}, 1};
   extras.pins = &pin;
@@ -418,9 +428,18 @@ TEST_CASE("handles go in any order", "[pellicle_run]") {
   pyramid.reset();
   Surface surface = surface_of(context.get(), run.get());
   context.reset();
-  const Context other = samples::make_context();
-  // What the first context made is still of use with another one.
+  Context other = samples::make_context();
+  // What the first context made is still of use with another one, and nothing of it is in the
+  // other's memory, which may go first.
   CHECK(advance(other.get(), run.get(), PLC_ONE_LEVEL).between_levels == 1);
+  surface = surface_of(other.get(), run.get());
+  saved(other.get(), run.get());
+  int64_t now = -1;
+  REQUIRE(plc_context_memory(other.get(), &now, nullptr) == PLC_OK);
+  CHECK(now == 0);
+  other.reset();
+  const Context third = samples::make_context();
+  CHECK(advance(third.get(), run.get(), PLC_ONE_LEVEL).between_levels == 1);
   run.reset();
   CHECK(plc_surface_vertex_count(surface.get()) > 0);
   CHECK(samples::positions(surface.get(), PLC_SPACE_LPS).size() > 0);
@@ -499,4 +518,48 @@ TEST_CASE("a pyramid tells its levels and their values", "[pellicle_run]") {
   CHECK(plc_pyramid_level_info(context.get(), pyramid.get(), 3, &level) == PLC_INVALID_ARGUMENT);
   CHECK(std::string(plc_context_message(context.get())) == "level 3: the pyramid has 0 .. 2");
   CHECK(plc_pyramid_levels(nullptr) == -1);
+}
+
+TEST_CASE("a state that somebody has altered and sealed again is refused or harmless",
+          "[pellicle_run]") {
+  const Scene s;
+  const Context context = samples::make_context();
+  const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
+  plc_extras extras = samples::no_extras();
+  extras.level = [](const plc_level_report*, const plc_surface* surface, void*) {
+    samples::positions(surface, PLC_SPACE_LPS);
+    samples::faces(surface, PLC_SPACE_LPS);
+    return PLC_VERDICT_CANCEL;
+  };
+  int taken = 0;
+  for (const plc_amount amount : {PLC_ONE_ITERATION, PLC_ONE_LEVEL}) {
+    Run run = run_of(context.get(), pyramid.get(), s.parameters);
+    advance(context.get(), run.get(), amount);
+    const std::vector<uint8_t> state = saved(context.get(), run.get());
+    // All that comes before the surface.
+    constexpr size_t kHead = 28, kFields = 700;
+    for (size_t at = kHead; at < kFields; ++at) {
+      for (const int value : {0, 1, 2, 3, 255}) {
+        std::vector<uint8_t> forged = state;
+        if (forged[at] == value) continue;
+        forged[at] = static_cast<uint8_t>(value);
+        const uint64_t sum = plc::words_hash(forged.data(), forged.size() - sizeof sum);
+        std::memcpy(forged.data() + forged.size() - sizeof sum, &sum, sizeof sum);
+        if (restore(context.get(), pyramid.get(), s.parameters, forged, run, &extras) != PLC_OK) {
+          continue;
+        }
+        ++taken;
+        plc_run_advance(context.get(), run.get(), PLC_ONE_ITERATION, nullptr);
+        plc_surface* surface = nullptr;
+        if (plc_run_surface(context.get(), run.get(), &surface) != PLC_OK) continue;
+        const Surface kept(surface);
+        const int levels = plc_surface_level_count(surface);
+        REQUIRE(levels <= s.parameters.levels + 1);
+        for (int i = 0; i < levels; ++i) {
+          REQUIRE(samples::level_of(surface, i).level == s.parameters.levels - i);
+        }
+      }
+    }
+  }
+  CHECK(taken > 0);
 }
