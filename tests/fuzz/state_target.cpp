@@ -51,7 +51,11 @@ class Saved {
 
   void restore(const std::vector<uint8_t>& bytes, bool forged) const {
     plc_run* run = nullptr;
-    const plc_status status = plc_run_restore(context(), pyramid_.get(), &parameters_, nullptr,
+    plc_extras extras;
+    plc_extras_defaults(&extras);
+    extras.level = export_surface;
+    extras.level_user = context();
+    const plc_status status = plc_run_restore(context(), pyramid_.get(), &parameters_, &extras,
                                               bytes.data(), bytes.size(), &run);
     check_status(context(), status);
     const RunHandle owner(run);
@@ -70,10 +74,35 @@ class Saved {
     check_status(context(), taken);
     require(taken == PLC_OK || forged, plc_context_message(context()));
     const SurfaceHandle kept(surface);
-    if (taken == PLC_OK) require_valid(context(), surface, "a restored run");
+    if (taken != PLC_OK) return;
+    require_valid(context(), surface, "a restored run");
+    const int levels = plc_surface_level_count(surface);
+    require(levels <= parameters_.levels + 1, "more levels than the pyramid has");
+    for (int i = 0; i < levels; ++i) {
+      plc_level_report report{};
+      report.struct_size = sizeof report;
+      expect_ok(plc_surface_level(context(), surface, i, &report));
+      require(report.level == parameters_.levels - i, "a level that is another");
+    }
   }
 
  private:
+  // Into rooms of the documented sizes.
+  static plc_verdict export_surface(const plc_level_report*, const plc_surface* surface,
+                                    void* user) {
+    auto* context = static_cast<plc_context*>(user);
+    const int64_t vertices = plc_surface_vertex_count(surface);
+    const int64_t faces = plc_surface_face_count(surface);
+    std::vector<float> xyz(static_cast<size_t>(3 * vertices));
+    std::vector<uint32_t> abc(static_cast<size_t>(3 * faces));
+    require(plc_surface_positions(context, surface, PLC_SPACE_LPS, xyz.data(), vertices) == PLC_OK,
+            plc_context_message(context));
+    require(plc_surface_faces(context, surface, PLC_SPACE_LPS, abc.data(), faces) == PLC_OK,
+            plc_context_message(context));
+    for (const uint32_t v : abc) require(int64_t{v} < vertices, "a face of no vertex");
+    return PLC_VERDICT_ACCEPT;
+  }
+
   plc_context* context() const { return context_.get(); }
   void expect_ok(plc_status status) const {
     require(status == PLC_OK, plc_context_message(context()));
