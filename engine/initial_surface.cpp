@@ -41,14 +41,16 @@ void add_icosahedron(Mesh& mesh) {
 // A sphere of radius 1 whose mean edge is at most `edge`; `copies` of it have to fit.
 Status make_sphere(Mesh& mesh, double edge, double copies, const Executor& executor) {
   double vertices = 12;
-  for (double mean = kIcosahedronEdge; mean > edge; mean /= kRefinement) {
+  double mean = kIcosahedronEdge;
+  while (mean > edge) {
+    mean /= kRefinement;
     vertices = 3 * vertices - 4;
     if (vertices * copies > static_cast<double>(kMaxMeshVertices)) return too_many_vertices();
   }
   mesh.clear();
   add_icosahedron(mesh);
   mesh.delta = kIcosahedronEdge / 1.5;
-  double mean = kIcosahedronEdge;
+  mean = kIcosahedronEdge;
   while (mean > edge) {
     mean /= kRefinement;
     refine(mesh, executor);

@@ -2,7 +2,6 @@
 // rename an output file of tools/atomic_file.cpp fails as on a full disk, and so do all later
 // writes and makings; then the file PELLICLE_FAILED is made. Of a write that fails, half is written
 // before.
-#define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
