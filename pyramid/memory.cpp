@@ -7,17 +7,7 @@
 
 #include <cstdlib>
 
-// Under sanitizers memory comes from their own allocator, which knows its ends.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define PLC_SANITIZED_MEMORY 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define PLC_SANITIZED_MEMORY 1
-#endif
-#endif
-#ifndef PLC_SANITIZED_MEMORY
-#define PLC_SANITIZED_MEMORY 0
-#endif
+#include "pyramid/sanitized.h"
 
 namespace plc {
 

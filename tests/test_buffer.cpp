@@ -5,6 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "pyramid/sanitized.h"
+
 using plc::Buffer;
 
 TEST_CASE("a buffer keeps its contents and its alignment when it grows", "[pyramid]") {
@@ -16,7 +18,7 @@ TEST_CASE("a buffer keeps its contents and its alignment when it grows", "[pyram
   for (uint32_t i = 0; i < 5000; ++i) REQUIRE(buffer[i] == i);
 }
 
-#if !PLC_SANITIZED_BUFFERS
+#if !PLC_SANITIZED_MEMORY
 TEST_CASE("large buffers that lie side by side begin at different lines of a page", "[pyramid]") {
   // Or else the streams of a mesh compete for the same sets of the cache.
   struct {
@@ -67,7 +69,7 @@ TEST_CASE("buffers copy, move and swap like values", "[pyramid]") {
   REQUIRE(copy_of_empty.empty());
 }
 
-#if !PLC_SANITIZED_BUFFERS  // whose allocator aborts at once
+#if !PLC_SANITIZED_MEMORY  // whose allocator aborts at once
 TEST_CASE("a buffer beyond all memory throws bad_alloc and stays as it was", "[pyramid]") {
   Buffer<double> buffer(3);
   buffer[1] = 2.0;

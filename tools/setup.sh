@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian packages that the named purposes need:
 #   tools/setup.sh [build] [test] [python] [demo] [lint] [compilers] [perf] [peers] [fuzz]
-#     [package] [coverage]
+#     [package] [coverage] [valgrind]
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
 
@@ -18,6 +18,7 @@ fuzz=(clang libclang-rt-14-dev)  # libFuzzer and the sanitizers
 peers=(libvtk9-dev libcgal-dev)  # programs that perf/run compares with
 package=(dpkg-dev file)
 coverage=(gcovr jq)
+valgrind=(valgrind)
 
 wanted=()
 for purpose in "$@"; do
@@ -33,9 +34,10 @@ for purpose in "$@"; do
     peers) wanted+=("${peers[@]}") ;;
     package) wanted+=("${package[@]}") ;;
     coverage) wanted+=("${coverage[@]}") ;;
+    valgrind) wanted+=("${valgrind[@]}") ;;
     *)
       echo "setup.sh: unknown purpose $purpose: build, test, python, demo, lint, compilers, perf," \
-        "peers, fuzz, package or coverage" >&2
+        "peers, fuzz, package, coverage or valgrind" >&2
       exit 2
       ;;
   esac
