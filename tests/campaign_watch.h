@@ -1,25 +1,18 @@
 // One run of a case: makes it in its way, listens to its callbacks, and looks at what comes out.
 #pragma once
-#include <memory>
 #include <string>
 
 #include "tests/campaign_host.h"
 #include "tests/campaign_run.h"
+#include "tests/sample_handles.h"
 
 namespace campaign {
 
-struct Destroy {
-  void operator()(plc_context* context) const { plc_context_destroy(context); }
-  void operator()(plc_volume* volume) const { plc_volume_destroy(volume); }
-  void operator()(plc_pyramid* pyramid) const { plc_pyramid_destroy(pyramid); }
-  void operator()(plc_run* run) const { plc_run_destroy(run); }
-  void operator()(plc_surface* surface) const { plc_surface_destroy(surface); }
-};
-using Context = std::unique_ptr<plc_context, Destroy>;
-using Volume = std::unique_ptr<plc_volume, Destroy>;
-using Pyramid = std::unique_ptr<plc_pyramid, Destroy>;
-using Run = std::unique_ptr<plc_run, Destroy>;
-using Surface = std::unique_ptr<plc_surface, Destroy>;
+using samples::Context;
+using samples::Surface;
+using Volume = samples::VolumeHandle;
+using Pyramid = samples::PyramidHandle;
+using Run = samples::RunHandle;
 
 // Of all threads of the process: what else the machine does is no part of it.
 double processor_seconds();

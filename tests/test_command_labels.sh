@@ -3,37 +3,13 @@
 # most a voxel apart, and bad input gets one line.   tests/test_command_labels.sh PELLICLE
 set -uo pipefail
 pellicle=$(realpath "$1")
+tests=$(dirname "$(realpath "${BASH_SOURCE[0]}")")
 here=$(mktemp -d)
 trap 'rm -rf "$here"' EXIT
 cd "$here" || exit 1
 mkdir out
-failures=0
-
-fails() {
-  echo "FAILED: $1"
-  sed 's/^/    /' stderr
-  failures=$((failures + 1))
-}
-
-# refused WHAT WORD COMMAND...: exit code 2, one line on stderr that has WORD in it, nothing written.
-refused() {
-  local what=$1 word=$2 code=0
-  shift 2
-  "$@" >stdout 2>stderr </dev/null || code=$?
-  if [ $code -ne 2 ]; then fails "$what: exit code $code, not 2"
-  elif [ "$(wc -l <stderr)" -ne 1 ]; then fails "$what: not one line on stderr"
-  elif ! grep -qi -- "$word" stderr; then fails "$what: the line does not say \"$word\""
-  elif [ -n "$(find out -mindepth 1)" ]; then fails "$what: leaves $(find out -mindepth 1)"
-  fi
-  find out -mindepth 1 -delete
-}
-
-works() {  # WHAT COMMAND...
-  local what=$1 code=0
-  shift
-  "$@" >stdout 2>stderr </dev/null || code=$?
-  if [ $code -ne 0 ]; then fails "$what: exit code $code"; fi
-}
+# shellcheck source=tests/command_helpers.sh
+source "$tests/command_helpers.sh"
 
 # All .off meshes given, as one.
 union() {
@@ -46,7 +22,7 @@ union() {
 
 # The number of a mesh's components that `pellicle check` tells; fails unless it is valid.
 components() {
-  works "check of $1" "$pellicle" check "$1"
+  works "check of $1" 0 "$pellicle" check "$1"
   awk '/^components +[0-9]/ { print $2 }' stdout
 }
 
@@ -59,8 +35,8 @@ at_most_apart() {  # LIMIT MESH OTHER
 }
 
 # ---- a phantom with a label inside another, on voxels that are no cubes
-works "phantom" "$pellicle" phantom labels --size 36,36,24 --spacing 1,1,1.5 --count 3 -o cells.nrrd
-works "labels" "$pellicle" extract --labels cells.nrrd -o out/cell.off --report out/cell.json
+works "phantom" 0 "$pellicle" phantom labels --size 36,36,24 --spacing 1,1,1.5 --count 3 -o cells.nrrd
+works "labels" 0 "$pellicle" extract --labels cells.nrrd -o out/cell.off --report out/cell.json
 if [ -s stderr ] && grep -q "left out" stderr; then fails "labels: one is left out"; fi
 grep -q "^labels   4 written, 0 left out" stdout || fails "labels: not four are told"
 found=$(cd out && echo cell-*)
@@ -99,7 +75,7 @@ zeros() { head -c "$1" /dev/zero; }
   done
 } >box.nrrd
 for space in voxel lps; do
-  works "box in $space" "$pellicle" extract --labels box.nrrd -o out/box.off --space $space --quiet
+  works "box in $space" 0 "$pellicle" extract --labels box.nrrd -o out/box.off --space $space --quiet
   "$pellicle" measure out/box-7.off 2>stderr | grep -E "^centroid" >centroid
   [ $space = voxel ] && expected="16.5 13.5 3.5" || expected="73 233 307"
   awk -v expected="$expected" '{ split(expected, e); gsub(",", "");
@@ -109,13 +85,13 @@ done
 find out -mindepth 1 -delete
 
 # ---- labels that meet at first are drawn apart
-works "phantom" "$pellicle" phantom labels --size 24 --count 10 -o rough.nrrd
-works "rough" "$pellicle" extract --labels rough.nrrd -o out/r.off --curvature 0 --max-iterations 100
+works "phantom" 0 "$pellicle" phantom labels --size 24 --count 10 -o rough.nrrd
+works "rough" 0 "$pellicle" extract --labels rough.nrrd -o out/r.off --curvature 0 --max-iterations 100
 grep -qE "^labels   11 written, 0 left out, [1-9]" stdout || fails "rough: none was tried again"
 union out/r-*.off >all.off
 components all.off >/dev/null
 mkdir again
-works "rough, threads" "$pellicle" extract --labels rough.nrrd -o again/r.off --curvature 0 \
+works "rough, threads" 0 "$pellicle" extract --labels rough.nrrd -o again/r.off --curvature 0 \
   --max-iterations 100 --threads 3 --quiet
 if [ -s stdout ]; then fails "--quiet: not quiet"; fi
 diff -rq out again >stderr || fails "the surfaces depend on threads"
@@ -130,7 +106,7 @@ zeros 512 | nrrd uint8 >zeros.nrrd
 awk 'BEGIN { printf "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 12 12 12\nencoding: ascii\n\n"
   for (i = 0; i < 1728; ++i) { x = i % 12; y = int(i / 12) % 12; z = int(i / 144)
     print (x > 1 && x < 10 && y > 1 && y < 10 && z > 1 && z < 10 ? 3 : i == 0 ? 8 : 0) } }' >speck.nrrd
-works "a speck" "$pellicle" extract --labels speck.nrrd -o out/s.ply --quiet
+works "a speck" 0 "$pellicle" extract --labels speck.nrrd -o out/s.ply --quiet
 grep -q "label 8: 1 voxel, .*left out" stderr || fails "a speck: not told"
 if [ "$(wc -l <stderr)" -ne 1 ]; then fails "a speck: not one line"; fi
 if [ "$(ls out)" != s-3.ply ]; then fails "a speck: wrote $(ls out)"; fi
@@ -161,7 +137,7 @@ if [ $code -ne 2 ] || ! grep -q "no label is large enough" stderr; then fails "o
 # ---- Ctrl-C
 "$pellicle" extract --help >stdout 2>stderr
 grep -q -- "--labels FILE" stdout || fails "help of extract: no --labels"
-works "phantom" "$pellicle" phantom labels --size 120 --count 30 -o many.nrrd
+works "phantom" 0 "$pellicle" phantom labels --size 120 --count 30 -o many.nrrd
 code=0
 timeout --preserve-status -s INT 2 "$pellicle" extract --labels many.nrrd -o out/m.ply \
   --report out/m.json --quiet >stdout 2>stderr || code=$?

@@ -2,23 +2,19 @@
 // every byte, and what a call says is checked.
 #pragma once
 #include <cstdlib>
-#include <memory>
 #include <string>
 
 #include "engine/pellicle.h"
 #include "tests/fuzz/input.h"
+#include "tests/sample_handles.h"
 
 namespace fuzz {
 
-template <typename T, void (*destroy)(T*)>
-struct Destroy {
-  void operator()(T* handle) const { destroy(handle); }
-};
-using Context = std::unique_ptr<plc_context, Destroy<plc_context, plc_context_destroy>>;
-using VolumeHandle = std::unique_ptr<plc_volume, Destroy<plc_volume, plc_volume_destroy>>;
-using PyramidHandle = std::unique_ptr<plc_pyramid, Destroy<plc_pyramid, plc_pyramid_destroy>>;
-using RunHandle = std::unique_ptr<plc_run, Destroy<plc_run, plc_run_destroy>>;
-using SurfaceHandle = std::unique_ptr<plc_surface, Destroy<plc_surface, plc_surface_destroy>>;
+using samples::Context;
+using samples::PyramidHandle;
+using samples::RunHandle;
+using samples::VolumeHandle;
+using SurfaceHandle = samples::Surface;
 
 inline void* allocate(size_t size, size_t alignment, void*) {
   void* data = nullptr;
