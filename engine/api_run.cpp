@@ -9,10 +9,8 @@
 #include "engine/api_force.h"
 #include "engine/api_surface.h"
 #include "engine/fingerprint.h"
-#include "engine/fnv.h"
 #include "engine/parameters.h"
 #include "engine/refinement.h"
-#include "engine/state_io.h"
 #include "pyramid/check_volume.h"
 #include "pyramid/mask.h"
 
@@ -48,8 +46,6 @@ void take_pyramid(const plc_parameters& from, plc_parameters& to) {
   to.reduction = from.reduction;
 }
 
-constexpr uint64_t kMagic = 0x45544154534C4350;  // "PLCSTATE"
-
 }  // namespace
 
 Status Run::prepare(std::shared_ptr<const PyramidData> pyramid, Pyramid images, Lasting lasting,
@@ -76,7 +72,6 @@ Status Run::prepare(std::shared_ptr<const PyramidData> pyramid, Pyramid images, 
     if (Status s = build_mask(*extras.mask, lasting, spec.start.mask); !s.ok()) return s;
   }
   given_hash_ ^= given_hash(spec);
-  if (spec.force) given_hash_ ^= static_cast<uint64_t>(extras.space) + 1;
   extras_.seeds = nullptr;
   extras_.mask = nullptr;
   extras_.mesh_xyz = nullptr;
@@ -247,55 +242,6 @@ std::unique_ptr<plc_surface> Run::surface() const {
 std::unique_ptr<plc_surface> Run::release() {
   recovery_.reset();
   return std::move(surface_);
-}
-
-// Of all that a saved state does not hold and goes on with.
-uint64_t Run::fingerprint() const {
-  if (!fingerprint_) {
-    Fnv hash;
-    hash.add(voxels_hash(pyramid_->volume->view, host_->schedule));
-    hash.add(frame_hash(pyramid_->volume->frame));
-    hash.add(parameters_hash(surface_->parameters));
-    hash.add(given_hash_);
-    fingerprint_ = hash.value();
-  }
-  return *fingerprint_;
-}
-
-void Run::save(StateWriter& to) const {
-  to.add(kMagic);
-  to.add(static_cast<int32_t>(PLC_VERSION));
-  to.add(fingerprint());
-  to.add(surface_->seconds.evolution);
-  recovery_->save(to);
-  to.add(words_hash(to.bytes().data(), to.bytes().size()));
-}
-
-Status Run::restore(const uint8_t* state, size_t size) {
-  const auto refuse = [](const char* what) {
-    return Status(ErrorCode::kInvalidData, std::string("state: ") + what);
-  };
-  uint64_t magic = 0;
-  uint64_t fingerprint_there = 0;
-  uint64_t sum = 0;
-  int32_t version = 0;
-  if (size < sizeof sum) return refuse("truncated");
-  StateReader from(state, size - sizeof sum);
-  StateReader(state + size - sizeof sum, sizeof sum).read(sum);
-  from.read(magic);
-  from.read(version);
-  from.read(fingerprint_there);
-  from.read(surface_->seconds.evolution);
-  if (!from.ok() || magic != kMagic) return refuse("not one of a run");
-  if (version != PLC_VERSION) return refuse("of another version of the library");
-  if (sum != words_hash(state, size - sizeof sum)) return refuse("truncated or altered");
-  if (fingerprint_there != fingerprint()) {
-    return refuse("of another image, other parameters or other extras");
-  }
-  return guard([&]() -> Status {
-    if (!recovery_->restore(from) || !from.at_end()) return refuse("altered");
-    return {};
-  });
 }
 
 }  // namespace plc

@@ -11,7 +11,6 @@
 #include "engine/constants.h"
 #include "engine/creation.h"
 #include "engine/face_rings.h"
-#include "engine/initial_surface.h"
 #include "engine/mesh_invariants.h"
 #include "engine/refinement.h"
 #include "engine/resolution.h"

@@ -1,6 +1,7 @@
 #include "engine/face_rings.h"
 
 #include <algorithm>
+#include <string>
 
 #include "engine/blocks.h"
 #include "pyramid/memory.h"
@@ -68,6 +69,12 @@ void fill_from_rings(Mesh& mesh, const float* xyz, size_t vertex_count, const Fa
     for (uint32_t k = 0; k < rings.length(v); ++k) ring[k] = id[rings.ring(v)[k]];
     mesh.set_ring(id[v], ring);
   }
+}
+
+Status too_many_vertices() {
+  return {ErrorCode::kOutOfMemory, "the surface needs more than " +
+                                       std::to_string(kMaxMeshVertices) +
+                                       " vertices at this resolution"};
 }
 
 }  // namespace plc

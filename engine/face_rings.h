@@ -6,6 +6,7 @@
 #include "engine/mesh.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
+#include "pyramid/status.h"
 
 namespace plc {
 
@@ -37,6 +38,8 @@ void fill_from_rings(Mesh& mesh, const float* xyz, size_t vertex_count, const Fa
 
 // Ids up to which the engine's buffers can be indexed: 12 columns per vertex within 32 bits.
 inline constexpr uint64_t kMaxMeshVertices = (uint64_t{1} << 32) / kRingColumns - kRingLanes;
+// kOutOfMemory: it would be more.
+Status too_many_vertices();
 // Valences are 16 bit.
 inline constexpr uint32_t kMaxValence = 65535;
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <string>
 
 #include "engine/constants.h"
 #include "engine/face_rings.h"
@@ -40,9 +39,10 @@ void add_icosahedron(Mesh& mesh) {
 
 // A sphere of radius 1 whose mean edge is at most `edge`; `copies` of it have to fit.
 Status make_sphere(Mesh& mesh, double edge, double copies, const Executor& executor) {
+  int refinements = 0;
   double vertices = 12;
   double mean = kIcosahedronEdge;
-  while (mean > edge) {
+  for (; mean > edge; ++refinements) {
     mean /= kRefinement;
     vertices = 3 * vertices - 4;
     if (vertices * copies > static_cast<double>(kMaxMeshVertices)) return too_many_vertices();
@@ -50,9 +50,7 @@ Status make_sphere(Mesh& mesh, double edge, double copies, const Executor& execu
   mesh.clear();
   add_icosahedron(mesh);
   mesh.delta = kIcosahedronEdge / 1.5;
-  mean = kIcosahedronEdge;
-  while (mean > edge) {
-    mean /= kRefinement;
+  for (; refinements > 0; --refinements) {
     refine(mesh, executor);
     for (uint32_t v = 0; v < mesh.slots(); ++v) {
       mesh.place(v, mesh.at(v) * (1.0F / length(mesh.at(v))));
@@ -72,12 +70,6 @@ void append_sphere(Mesh& mesh, const Mesh& sphere, Vec3 centre, Vec3 radii) {
 constexpr double kInitialEdge = 2.0;
 
 }  // namespace
-
-Status too_many_vertices() {
-  return {ErrorCode::kOutOfMemory, "the surface needs more than " +
-                                       std::to_string(kMaxMeshVertices) +
-                                       " vertices at this resolution"};
-}
 
 Status make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& executor) {
   // The corner of the box lies on the surface: 3 (1/r)^4 = 1.

@@ -9,11 +9,6 @@
 
 namespace plc {
 
-// kOutOfMemory: more than a mesh can have.
-Status too_many_vertices();
-
-// Each of these fails so before it takes memory for them.
-
 // A box of mesh space.
 struct Extent {
   std::array<double, 3> low{}, high{};
@@ -23,6 +18,8 @@ struct Extent {
 // as 3.46 (embedding_guard.h); the first iteration splits what violates (2). An icosahedron refined
 // by (3.4) onto |x/a|^4 + |y/b|^4 + |z/c|^4 = 1, which circumscribes the box and wastes less room
 // than the ellipsoid does. mesh.delta = delta.
+//
+// kOutOfMemory, here and below: more vertices than a mesh can have, told before memory is taken.
 Status make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& executor);
 
 // Adds an ellipsoid with edges of 1 to 2 delta to the mesh, which keeps its delta. The caller sees

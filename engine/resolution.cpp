@@ -399,7 +399,6 @@ void Resolution::moved(uint32_t v) {
   involve(v);
 }
 
-// Where another face is as near as the mid-point's rounding, the halves may meet it.
 bool Resolution::apply_creation(const Candidate& candidate, size_t trial) {
   if (trials_.admitted(candidate, trial) == Trials::kRefused) return false;
   moved(create_on_edge(mesh_, candidate.edge));

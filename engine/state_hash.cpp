@@ -1,7 +1,5 @@
 #include "engine/state_hash.h"
 
-#include <algorithm>
-
 namespace plc {
 
 uint64_t state_hash(const Mesh& mesh) {

@@ -8,7 +8,7 @@
 
 namespace plc {
 
-// Values as they lie in memory: for the library's own version and byte order (api_run.cpp).
+// Values as they lie in memory: for the library's own version and byte order (api_run_state.cpp).
 class StateWriter {
  public:
   template <typename T>

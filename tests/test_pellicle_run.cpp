@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/fingerprint.h"
 #include "engine/pellicle.h"
 #include "tests/sample_api.h"
 #include "tests/sample_hosts.h"
+#include "tests/sample_steps.h"
 
 namespace {
 
@@ -18,96 +18,17 @@ using Catch::Matchers::Contains;
 using samples::Context;
 using Pyramid = samples::PyramidHandle;
 using Run = samples::RunHandle;
+using samples::advance;
+using samples::hash_now;
+using samples::pyramid_of;
+using samples::restore;
+using samples::run_of;
+using samples::saved;
+using samples::Scene;
 using samples::Surface;
+using samples::surface_of;
+using samples::volume_of;
 using samples::VolumeHandle;
-
-// Two balls that overlap, so that the topology changes, and a detached one for a late bubble.
-samples::Volume scene() {
-  return samples::sampled(samples::empty_volume({36, 24, 22}), [](const samples::Point& p) {
-    const auto ball = [&](double x, double r) {
-      return 1 - samples::norm(p[0] - x, p[1], p[2]) / (2 * r);
-    };
-    return std::max({0.0, ball(-9, 6), ball(1, 5), ball(13, 3)});
-  });
-}
-
-plc_parameters scene_parameters() {
-  plc_parameters p = samples::parameters(0.5, 2);
-  p.max_iterations = 120;
-  return p;
-}
-
-VolumeHandle volume_of(plc_context* context, const plc_image& image,
-                       plc_ownership ownership = PLC_BORROW) {
-  plc_volume* volume = nullptr;
-  const plc_status status = plc_volume_create(context, &image, ownership, &volume);
-  INFO(plc_context_message(context));
-  REQUIRE(status == PLC_OK);
-  return VolumeHandle(volume);
-}
-
-Pyramid pyramid_of(plc_context* context, const plc_image& image, const plc_parameters& p) {
-  plc_pyramid* pyramid = nullptr;
-  const VolumeHandle volume = volume_of(context, image);
-  const plc_status status = plc_pyramid_create(context, volume.get(), &p, &pyramid);
-  INFO(plc_context_message(context));
-  REQUIRE(status == PLC_OK);
-  return Pyramid(pyramid);
-}
-
-Run run_of(plc_context* context, const plc_pyramid* pyramid, const plc_parameters& p,
-           const plc_extras* extras = nullptr) {
-  plc_run* run = nullptr;
-  const plc_status status = plc_run_create(context, pyramid, &p, extras, &run);
-  INFO(plc_context_message(context));
-  REQUIRE(status == PLC_OK);
-  return Run(run);
-}
-
-plc_run_state advance(plc_context* context, plc_run* run, plc_amount amount) {
-  plc_run_state state{};
-  state.struct_size = sizeof state;
-  const plc_status status = plc_run_advance(context, run, amount, &state);
-  INFO(plc_context_message(context));
-  REQUIRE(status == PLC_OK);
-  return state;
-}
-
-Surface surface_of(plc_context* context, const plc_run* run) {
-  plc_surface* surface = nullptr;
-  REQUIRE(plc_run_surface(context, run, &surface) == PLC_OK);
-  return Surface(surface);
-}
-
-uint64_t hash_now(plc_context* context, const plc_run* run) {
-  return plc_surface_hash(surface_of(context, run).get());
-}
-
-std::vector<uint8_t> saved(plc_context* context, const plc_run* run) {
-  size_t size = 0;
-  REQUIRE(plc_run_save(context, run, nullptr, 0, &size) == PLC_OK);
-  std::vector<uint8_t> state(size);
-  REQUIRE(plc_run_save(context, run, state.data(), state.size(), &size) == PLC_OK);
-  REQUIRE(size == state.size());
-  return state;
-}
-
-plc_status restore(plc_context* context, const plc_pyramid* pyramid, const plc_parameters& p,
-                   const std::vector<uint8_t>& state, Run& run,
-                   const plc_extras* extras = nullptr) {
-  plc_run* restored = nullptr;
-  const plc_status status =
-      plc_run_restore(context, pyramid, &p, extras, state.data(), state.size(), &restored);
-  run.reset(restored);
-  CHECK((status == PLC_OK) == (restored != nullptr));
-  return status;
-}
-
-struct Scene {
-  samples::Volume volume = scene();
-  plc_image image = samples::image_of(volume);
-  plc_parameters parameters = scene_parameters();
-};
 
 }  // namespace
 
@@ -160,121 +81,6 @@ TEST_CASE("the surface of a run is valid from the start on and after every itera
     REQUIRE(check.valid == 1);
     state = advance(context.get(), run.get(), PLC_ONE_ITERATION);
   }
-}
-
-TEST_CASE("a saved run goes on with the same bits, wherever it was saved", "[pellicle_run]") {
-  const Scene s;
-  const Context one = samples::make_context(1), other = samples::make_context(3, PLC_SIMD_SCALAR);
-  const Pyramid pyramid = pyramid_of(one.get(), s.image, s.parameters);
-  const Pyramid again = pyramid_of(other.get(), s.image, s.parameters);
-  const Run run = run_of(one.get(), pyramid.get(), s.parameters);
-  Run follower;
-  plc_run_state state{};
-  for (int i = 0; state.done == 0; ++i) {
-    // Every seventh iteration the follower starts anew from the state, in another context.
-    if (i % 7 == 0) {
-      REQUIRE(restore(other.get(), again.get(), s.parameters, saved(one.get(), run.get()),
-                      follower) == PLC_OK);
-    }
-    state = advance(one.get(), run.get(), PLC_ONE_ITERATION);
-    const plc_run_state there = advance(other.get(), follower.get(), PLC_ONE_ITERATION);
-    INFO("iteration " << i << ", level " << state.progress.level);
-    REQUIRE(there.done == state.done);
-    REQUIRE(there.progress.energy == state.progress.energy);
-    REQUIRE(hash_now(other.get(), follower.get()) == hash_now(one.get(), run.get()));
-  }
-}
-
-TEST_CASE("what sleeps is asleep in a restored run", "[pellicle_run]") {
-  // The outside is calm long before the bottom of the hole is reached.
-  samples::Volume volume =
-      samples::sampled(samples::empty_volume({40, 40, 40}), [](const samples::Point& p) {
-        const double ball = 15 - samples::norm(p[0], p[1], p[2]);
-        const double hole = std::max(samples::norm(p[0], p[1], 0) - 5, -10 - p[2]);
-        return std::clamp(0.5 + std::min(ball, hole) / 4, 0.0, 1.0);
-      });
-  const plc_image image = samples::image_of(volume);
-  plc_parameters p = samples::parameters(0.5, 1);
-  p.calm_speed = 1e-9;  // to the last iteration
-  p.max_iterations = 80;
-  const Context context = samples::make_context(2);
-  const Pyramid pyramid = pyramid_of(context.get(), image, p);
-  const Run run = run_of(context.get(), pyramid.get(), p);
-  plc_run_state state{};
-  for (int i = 0; state.done == 0; ++i) {
-    Run follower;
-    if (i % 5 == 0) {
-      REQUIRE(restore(context.get(), pyramid.get(), p, saved(context.get(), run.get()), follower) ==
-              PLC_OK);
-    }
-    state = advance(context.get(), run.get(), PLC_ONE_ITERATION);
-    if (follower == nullptr) continue;
-    const plc_run_state there = advance(context.get(), follower.get(), PLC_ONE_ITERATION);
-    INFO("iteration " << i);
-    REQUIRE(there.progress.energy == state.progress.energy);
-    REQUIRE(hash_now(context.get(), follower.get()) == hash_now(context.get(), run.get()));
-  }
-  // Some did sleep.
-  const auto moves = [](const plc_surface* surface) { return samples::level_of(surface, 1).moves; };
-  p.sleeping = 0;
-  CHECK(moves(surface_of(context.get(), run.get()).get()) <
-        moves(samples::extract(context.get(), image, p).get()) * 3 / 4);
-}
-
-TEST_CASE("a state that is none, or of something else, is refused in words", "[pellicle_run]") {
-  const Scene s;
-  const Context context = samples::make_context();
-  const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
-  const Run run = run_of(context.get(), pyramid.get(), s.parameters);
-  advance(context.get(), run.get(), PLC_ONE_LEVEL);
-  const std::vector<uint8_t> state = saved(context.get(), run.get());
-  Run none;
-  const auto refused = [&](const std::vector<uint8_t>& bytes, const plc_pyramid* of,
-                           const plc_parameters& p) {
-    CHECK(restore(context.get(), of, p, bytes, none) == PLC_INVALID_DATA);
-    return std::string(plc_context_message(context.get()));
-  };
-  CHECK(refused({1, 2, 3}, pyramid.get(), s.parameters) == "state: truncated");
-  CHECK(refused(std::vector<uint8_t>(100), pyramid.get(), s.parameters) ==
-        "state: not one of a run");
-  std::vector<uint8_t> altered = state;
-  altered[altered.size() / 2] ^= 1;
-  CHECK(refused(altered, pyramid.get(), s.parameters) == "state: truncated or altered");
-  CHECK(refused({state.begin(), state.end() - 8}, pyramid.get(), s.parameters) ==
-        "state: truncated or altered");
-  altered = state;
-  altered[8] ^= 1;
-  CHECK(refused(altered, pyramid.get(), s.parameters) ==
-        "state: of another version of the library");
-  const std::string other = "state: of another image, other parameters or other extras";
-  plc_parameters softer = s.parameters;
-  softer.curvature *= 2;
-  CHECK(refused(state, pyramid.get(), softer) == other);
-  Scene changed;
-  changed.volume.values[1000] += 0.001F;
-  const Pyramid of_changed = pyramid_of(context.get(), changed.image, s.parameters);
-  CHECK(refused(state, of_changed.get(), s.parameters) == other);
-  Scene moved;
-  moved.image.origin[0] += 1000;
-  const Pyramid of_moved = pyramid_of(context.get(), moved.image, s.parameters);
-  CHECK(refused(state, of_moved.get(), s.parameters) == other);
-  Scene turned;
-  const double quarter[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
-  std::copy(quarter, quarter + 9, turned.image.direction);
-  const Pyramid of_turned = pyramid_of(context.get(), turned.image, s.parameters);
-  CHECK(refused(state, of_turned.get(), s.parameters) == other);
-  plc_extras extras = samples::no_extras();
-  const plc_pin pin{{0, 0, 0}, 1};
-  extras.pins = &pin;
-  extras.pin_count = 1;
-  CHECK(restore(context.get(), pyramid.get(), s.parameters, state, none, &extras) ==
-        PLC_INVALID_DATA);
-  // Room that is too small.
-  size_t size = 0;
-  std::vector<uint8_t> small(10, 7);
-  CHECK(plc_run_save(context.get(), run.get(), small.data(), small.size(), &size) ==
-        PLC_INVALID_ARGUMENT);
-  CHECK(small == std::vector<uint8_t>(10, 7));
 }
 
 TEST_CASE("a run that was cancelled goes on as if nothing had been", "[pellicle_run]") {
@@ -518,48 +324,4 @@ TEST_CASE("a pyramid tells its levels and their values", "[pellicle_run]") {
   CHECK(plc_pyramid_level_info(context.get(), pyramid.get(), 3, &level) == PLC_INVALID_ARGUMENT);
   CHECK(std::string(plc_context_message(context.get())) == "level 3: the pyramid has 0 .. 2");
   CHECK(plc_pyramid_levels(nullptr) == -1);
-}
-
-TEST_CASE("a state that somebody has altered and sealed again is refused or harmless",
-          "[pellicle_run]") {
-  const Scene s;
-  const Context context = samples::make_context();
-  const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
-  plc_extras extras = samples::no_extras();
-  extras.level = [](const plc_level_report*, const plc_surface* surface, void*) {
-    samples::positions(surface, PLC_SPACE_LPS);
-    samples::faces(surface, PLC_SPACE_LPS);
-    return PLC_VERDICT_CANCEL;
-  };
-  int taken = 0;
-  for (const plc_amount amount : {PLC_ONE_ITERATION, PLC_ONE_LEVEL}) {
-    Run run = run_of(context.get(), pyramid.get(), s.parameters);
-    advance(context.get(), run.get(), amount);
-    const std::vector<uint8_t> state = saved(context.get(), run.get());
-    // All that comes before the surface.
-    constexpr size_t kHead = 28, kFields = 700;
-    for (size_t at = kHead; at < kFields; ++at) {
-      for (const int value : {0, 1, 2, 3, 255}) {
-        std::vector<uint8_t> forged = state;
-        if (forged[at] == value) continue;
-        forged[at] = static_cast<uint8_t>(value);
-        const uint64_t sum = plc::words_hash(forged.data(), forged.size() - sizeof sum);
-        std::memcpy(forged.data() + forged.size() - sizeof sum, &sum, sizeof sum);
-        if (restore(context.get(), pyramid.get(), s.parameters, forged, run, &extras) != PLC_OK) {
-          continue;
-        }
-        ++taken;
-        plc_run_advance(context.get(), run.get(), PLC_ONE_ITERATION, nullptr);
-        plc_surface* surface = nullptr;
-        if (plc_run_surface(context.get(), run.get(), &surface) != PLC_OK) continue;
-        const Surface kept(surface);
-        const int levels = plc_surface_level_count(surface);
-        REQUIRE(levels <= s.parameters.levels + 1);
-        for (int i = 0; i < levels; ++i) {
-          REQUIRE(samples::level_of(surface, i).level == s.parameters.levels - i);
-        }
-      }
-    }
-  }
-  CHECK(taken > 0);
 }
