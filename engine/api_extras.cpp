@@ -24,8 +24,15 @@ Status check_ball(const std::string& name, const double* place, double radius) {
   return {};
 }
 
-Status check_array(const char* name, const void* data, int64_t count) {
+constexpr int64_t kMostPlaces = int64_t{1} << 24U;
+constexpr int64_t kMostCorners = int64_t{1} << 32U;
+
+// Before anything of it is read.
+Status check_array(const char* name, const void* data, int64_t count, int64_t most) {
   if (count < 0) return bad_argument(std::string(name) + ": a negative count");
+  if (count > most) {
+    return bad_argument(std::string(name) + ": more than " + std::to_string(most));
+  }
   if (count > 0 && data == nullptr) return bad_argument(std::string(name) + ": must not be NULL");
   return {};
 }
@@ -69,15 +76,13 @@ Status check_extras(const plc_extras* given, const plc_parameters& p, const Volu
   }
   if (e.space < PLC_SPACE_LPS || e.space > PLC_SPACE_VOXEL)
     return bad_argument("space: not a plc_space");
-  for (const Status& s : {check_array("seeds", e.seeds, e.seed_count),
-                          check_array("mesh vertices", e.mesh_xyz, e.mesh_vertex_count),
-                          check_array("mesh faces", e.mesh_abc, e.mesh_face_count),
-                          check_array("attachments", e.attachments, e.attachment_count),
-                          check_array("pins", e.pins, e.pin_count), check_start(e, p)}) {
+  for (const Status& s :
+       {check_array("seeds", e.seeds, e.seed_count, kMostPlaces),
+        check_array("mesh vertices", e.mesh_xyz, e.mesh_vertex_count, kMostCorners),
+        check_array("mesh faces", e.mesh_abc, e.mesh_face_count, kMostCorners),
+        check_array("attachments", e.attachments, e.attachment_count, kMostPlaces),
+        check_array("pins", e.pins, e.pin_count, kMostPlaces), check_start(e, p)}) {
     if (!s.ok()) return s;
-  }
-  if (e.mesh_vertex_count > int64_t{1} << 32U || e.mesh_face_count > int64_t{1} << 32U) {
-    return bad_argument("mesh: more than 2^32 vertices or faces");
   }
   for (int64_t i = 0; i < e.seed_count; ++i) {
     const std::string name = "seed " + std::to_string(i);

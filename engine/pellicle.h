@@ -51,11 +51,15 @@
 #define PLC_API __attribute__((visibility("default")))
 #endif
 
+/* Enumerations are ints: a value that is none of an enumeration's may be passed, and is refused. */
 #ifdef __cplusplus
+#define PLC_INT : int
 extern "C" {
+#else
+#define PLC_INT
 #endif
 
-typedef enum plc_status {
+typedef enum plc_status PLC_INT {
   PLC_OK = 0,
   PLC_INVALID_ARGUMENT = 1, /* a parameter is outside its range */
   PLC_INVALID_DATA = 2,     /* the image or mesh cannot be used */
@@ -64,7 +68,7 @@ typedef enum plc_status {
   PLC_INTERNAL = 5   /* a bug of the engine, caught before it did harm */
 } plc_status;
 
-typedef enum plc_simd {
+typedef enum plc_simd PLC_INT {
   PLC_SIMD_AUTO = 0, /* the best of this machine */
   PLC_SIMD_SCALAR = 1,
   PLC_SIMD_SSE4 = 2,
@@ -72,7 +76,7 @@ typedef enum plc_simd {
   PLC_SIMD_AVX512 = 4
 } plc_simd;
 
-typedef enum plc_voxel_type {
+typedef enum plc_voxel_type PLC_INT {
   PLC_U8 = 0,
   PLC_I16 = 1,
   PLC_U16 = 2,
@@ -80,7 +84,7 @@ typedef enum plc_voxel_type {
   PLC_F32 = 4
 } plc_voxel_type;
 
-typedef enum plc_space {
+typedef enum plc_space PLC_INT {
   PLC_SPACE_LPS = 0,  /* patient space, mm, x to the left, y to the back, z to the head (as ITK) */
   PLC_SPACE_RAS = 1,  /* patient space, mm, x to the right, y to the front, z to the head */
   PLC_SPACE_VOXEL = 2 /* voxel indices of the input image, voxel centres at integers */
@@ -111,7 +115,7 @@ typedef void (*plc_parallel_for_fn)(size_t tasks, plc_task_fn task, void* data, 
 typedef void* (*plc_allocate_fn)(size_t size, size_t alignment, void* user);
 typedef void (*plc_release_fn)(void* data, size_t size, size_t alignment, void* user);
 
-typedef enum plc_log_level {
+typedef enum plc_log_level PLC_INT {
   PLC_LOG_WARNING = 1, /* the result is valid, and perhaps not what was wanted */
   PLC_LOG_INFO = 2     /* what the engine has derived, and how it gets on, level by level */
 } plc_log_level;
@@ -177,7 +181,7 @@ PLC_API void plc_image_defaults(plc_image* image);
 
 /* Whether a volume has voxels of its own, or refers to the caller's, which must then neither change
  * nor go while the volume, a pyramid or a run of it is there. */
-typedef enum plc_ownership { PLC_COPY = 0, PLC_BORROW = 1 } plc_ownership;
+typedef enum plc_ownership PLC_INT { PLC_COPY = 0, PLC_BORROW = 1 } plc_ownership;
 
 /* PLC_INVALID_DATA: dims below 2 or of 2^62 bytes or more, spacing, origin or direction out of
  * range. NaN voxels are told by plc_pyramid_create. Voxels are borrowed where x is fastest and
@@ -194,14 +198,14 @@ PLC_API plc_status plc_volume_image(plc_context* context, const plc_volume* volu
 
 /* ---- parameters ------------------------------------------------------------------------- */
 
-typedef enum plc_rest_length {
+typedef enum plc_rest_length PLC_INT {
   PLC_REST_ZERO = 0, /* minimise the area (membrane) */
   PLC_REST_MEAN = 1, /* the mean edge length of the mesh at each step */
   PLC_REST_VALUE = 2 /* rest_length_value */
 } plc_rest_length;
 
 /* The surface that the evolution starts from (3.6), on the coarsest level. */
-typedef enum plc_init {
+typedef enum plc_init PLC_INT {
   PLC_INIT_BUBBLE = 0,  /* one bubble around the object; around the image where iso is NAN */
   PLC_INIT_BUBBLES = 1, /* bubbles[0] x bubbles[1] x bubbles[2] bubbles over the image */
   PLC_INIT_SEEDS = 2,   /* the spheres of plc_extras */
@@ -211,24 +215,24 @@ typedef enum plc_init {
 } plc_init;
 
 /* Which forces of the image act (3.8). */
-typedef enum plc_force {
+typedef enum plc_force PLC_INT {
   PLC_FORCE_ISO = 1,      /* (7): towards the value iso */
   PLC_FORCE_GRADIENT = 2, /* (8): along the gradient; iso may be NAN */
   PLC_FORCE_BOTH = 3
 } plc_force;
 
 /* What the evolution takes for the image; iso, window and pad are values of it. */
-typedef enum plc_feature {
+typedef enum plc_feature PLC_INT {
   PLC_FEATURE_NONE = 0,         /* the image itself */
   PLC_FEATURE_GRADIENT_NORM = 1 /* the norm of its gradient, per mm, after a Gaussian (3.8) */
 } plc_feature;
 
-typedef enum plc_bound {
+typedef enum plc_bound PLC_INT {
   PLC_BOUND_CLAMP = 0, /* the speed of each vertex is bounded (3.6, first method) */
   PLC_BOUND_SCALE = 1  /* the time step is scaled to the fastest vertex (3.6, second method) */
 } plc_bound;
 
-typedef enum plc_anisotropy {
+typedef enum plc_anisotropy PLC_INT {
   PLC_ANISOTROPY_PHYSICAL = 1, /* method 1 of 4.4: the mesh lives in mm */
   PLC_ANISOTROPY_VOXEL = 2,    /* method 2 of 4.4: the mesh lives in voxel proportions */
   PLC_ANISOTROPY_METRIC = 3    /* method 3 of 4.4: in those of each level, the forces in mm */
@@ -339,7 +343,7 @@ typedef int (*plc_force_fn)(const plc_force_points* points, float* forces, void*
 
 typedef struct plc_level_report plc_level_report;
 
-typedef enum plc_verdict {
+typedef enum plc_verdict PLC_INT {
   PLC_VERDICT_ACCEPT = 0, /* on to the next level, as any value but these */
   PLC_VERDICT_MORE = 1,   /* up to max_iterations more on this level */
   PLC_VERDICT_STOP = 2,   /* the surface as it is is the result */
@@ -351,7 +355,8 @@ typedef enum plc_verdict {
 typedef plc_verdict (*plc_level_fn)(const plc_level_report* level, const plc_surface* surface,
                                     void* user);
 
-/* What goes beyond an image and numbers. Everything is borrowed for the duration of the call. */
+/* What goes beyond an image and numbers. Everything is borrowed for the duration of the call. Up to
+ * 2^24 seeds, attachments and pins, up to 2^32 vertices and faces. */
 typedef struct plc_extras {
   size_t struct_size;
   plc_progress_fn progress; /* may be NULL, as all below */
@@ -437,7 +442,7 @@ PLC_API plc_status plc_run_create(plc_context* context, const plc_pyramid* pyram
                                   plc_run** run);
 PLC_API void plc_run_destroy(plc_run* run);
 
-typedef enum plc_amount {
+typedef enum plc_amount PLC_INT {
   PLC_ONE_ITERATION = 0, /* procedure Evolution, figure 9 */
   PLC_ONE_LEVEL = 1,     /* to the end of the level, RecoverShape, figure 12 */
   PLC_ALL_LEVELS = 2     /* to the end, PyramidalRecoverShape, figure 13 */
@@ -508,7 +513,7 @@ PLC_API plc_status plc_surface_faces(plc_context* context, const plc_surface* su
 PLC_API plc_status plc_surface_normals(plc_context* context, const plc_surface* surface,
                                        plc_space space, float* xyz, int64_t capacity);
 
-typedef enum plc_scalar {
+typedef enum plc_scalar PLC_INT {
   PLC_SCALAR_MEAN_CURVATURE = 0,     /* as plc_mesh_curvature, of the mesh in the space */
   PLC_SCALAR_GAUSSIAN_CURVATURE = 1, /* the same */
   PLC_SCALAR_AREA = 2,               /* the mixed area of the vertex, the same */

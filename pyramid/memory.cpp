@@ -63,7 +63,7 @@ void* allocate_of_system(size_t size, size_t alignment) {
 
 }  // namespace
 
-thread_local Memory* Memory::scoped = nullptr;
+constinit thread_local Memory* Memory::scoped = nullptr;
 
 Memory& Memory::current() {
   static Memory system;

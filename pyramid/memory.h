@@ -39,7 +39,7 @@ class Memory {
 
  private:
   friend class MemoryScope;
-  static thread_local Memory* scoped;
+  static constinit thread_local Memory* scoped;
 
   Hooks hooks_;
   int64_t limit_ = 0;

@@ -254,6 +254,9 @@ TEST_CASE("extras of another version, and arrays that are none, are refused", "[
   CHECK(wrong([](auto& e) { e.mesh_face_count = -4; }) == "mesh faces: a negative count");
   CHECK(wrong([](auto& e) { e.attachment_count = -1; }) == "attachments: a negative count");
   CHECK(wrong([](auto& e) { e.pin_count = -2; }) == "pins: a negative count");
+  CHECK(wrong([](auto& e) { e.pin_count = (1 << 24) + 1; }) == "pins: more than 16777216");
+  CHECK(wrong([](auto& e) { e.mesh_face_count = (int64_t{1} << 32) + 1; }) ==
+        "mesh faces: more than 4294967296");
 }
 
 TEST_CASE("places and radii that cannot be are refused by number", "[pellicle]") {
