@@ -149,8 +149,7 @@ std::string names(const std::vector<Pass>& passes, size_t begin, size_t end) {
 // nodes and edges built anew for every step would buy nothing over this. A host's threads are not
 // asked for loops within loops: passes then run in order.
 void Schedule::run_passes(const std::vector<Pass>& passes, bool small, const PassEnd& after) const {
-  const bool in_order =
-      small || threads() == 1 || threads_.parallel_for != nullptr || PLC_TASK_THREADS != 0;
+  const bool in_order = small || threads() == 1 || threads_.parallel_for != nullptr;
   std::vector<double> seconds(passes.size(), 0);
   const auto run_pass = [&](size_t i) {
     const double start = now();

@@ -46,21 +46,13 @@ Status check_spec(const PyramidSpec& spec) {
   return {};
 }
 
-Status check_size(const std::array<int64_t, 3>& padded, const PyramidSpec& spec) {
-  const int64_t plane = padded[0] * padded[1];
-  if (plane >= kMaxVoxels || plane * padded[2] >= kMaxVoxels) {
-    return {ErrorCode::kInvalidData, "image of " + voxels_text(padded) + " with its padding of " +
-                                         std::to_string(spec.pad_voxels) +
-                                         ": expected fewer than 2^31 in all"};
-  }
+Status check_depth(const std::array<int64_t, 3>& padded, const PyramidSpec& spec) {
   const int most = max_levels(padded, spec.reduction);
-  if (spec.levels > most) {
-    return {ErrorCode::kInvalidArgument, "levels " + std::to_string(spec.levels) +
-                                             ": too deep for an image of " + voxels_text(padded) +
-                                             " at reduction " + number_text(spec.reduction, 3) +
-                                             "; at most " + std::to_string(most)};
-  }
-  return {};
+  if (spec.levels <= most) return {};
+  return {ErrorCode::kInvalidArgument, "levels " + std::to_string(spec.levels) +
+                                           ": too deep for an image of " + voxels_text(padded) +
+                                           " at reduction " + number_text(spec.reduction, 3) +
+                                           "; at most " + std::to_string(most)};
 }
 
 // Sizes and units of (11); the real size mu x nu x pi is that of I_0 at all levels.
@@ -170,15 +162,26 @@ int max_levels(const std::array<int64_t, 3>& padded_dims, double reduction) {
   return levels;
 }
 
+Status pad_dims(const std::array<int64_t, 3>& dims, int pad_voxels,
+                std::array<int64_t, 3>& padded) {
+  padded = dims;
+  for (int64_t& dim : padded) dim += 2 * int64_t{pad_voxels};
+  const int64_t plane = padded[0] * padded[1];
+  if (plane < kMaxVoxels && plane * padded[2] < kMaxVoxels) return {};
+  return {ErrorCode::kInvalidData, "image of " + voxels_text(padded) + " with its padding of " +
+                                       std::to_string(pad_voxels) +
+                                       ": expected fewer than 2^31 in all"};
+}
+
 Status build_pyramid(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
                      SimdTarget simd, Pyramid& pyramid) {
   pyramid.levels.clear();
   Status status = check_volume(volume);
   if (status.ok()) status = check_spec(spec);
   if (!status.ok()) return status;
-  std::array<int64_t, 3> padded = volume.dims;
-  for (int64_t& dim : padded) dim += 2 * int64_t{spec.pad_voxels};
-  status = check_size(padded, spec);
+  std::array<int64_t, 3> padded{};
+  status = pad_dims(volume.dims, spec.pad_voxels, padded);
+  if (status.ok()) status = check_depth(padded, spec);
   if (status.ok()) status = build_levels(volume, spec, executor, simd, pyramid);
   if (!status.ok()) pyramid.levels.clear();
   return status;

@@ -58,6 +58,10 @@ int max_levels(const std::array<int64_t, 3>& padded_dims, double reduction);
 // voxels stays between them, one that is a voxel's value stays it.
 float base_value(const VolumeView& volume, const PyramidSpec& spec, double value);
 
+// The size of I_0: `dims`, of a volume that check_volume has passed, with the padding on every
+// side. kInvalidData: 2^31 voxels or more.
+Status pad_dims(const std::array<int64_t, 3>& dims, int pad_voxels, std::array<int64_t, 3>& padded);
+
 // Builds levels 0 .. spec.levels. I_0 borrows volume.voxels, which must outlive the pyramid; 32-bit
 // integers, and what has a window beyond the range of floats, become floats. Errors:
 // kInvalidArgument (reduction, window, level count too deep for the size), kInvalidData (dims, a
