@@ -25,7 +25,7 @@ Status check_ball(const std::string& name, const double* place, double radius) {
 }
 
 constexpr int64_t kMostPlaces = int64_t{1} << 24U;
-constexpr int64_t kMostCorners = int64_t{1} << 32U;
+constexpr int64_t kMostOfMesh = int64_t{1} << 32U;
 
 // Before anything of it is read.
 Status check_array(const char* name, const void* data, int64_t count, int64_t most) {
@@ -78,8 +78,8 @@ Status check_extras(const plc_extras* given, const plc_parameters& p, const Volu
     return bad_argument("space: not a plc_space");
   for (const Status& s :
        {check_array("seeds", e.seeds, e.seed_count, kMostPlaces),
-        check_array("mesh vertices", e.mesh_xyz, e.mesh_vertex_count, kMostCorners),
-        check_array("mesh faces", e.mesh_abc, e.mesh_face_count, kMostCorners),
+        check_array("mesh vertices", e.mesh_xyz, e.mesh_vertex_count, kMostOfMesh),
+        check_array("mesh faces", e.mesh_abc, e.mesh_face_count, kMostOfMesh),
         check_array("attachments", e.attachments, e.attachment_count, kMostPlaces),
         check_array("pins", e.pins, e.pin_count, kMostPlaces), check_start(e, p)}) {
     if (!s.ok()) return s;

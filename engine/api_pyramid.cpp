@@ -2,7 +2,6 @@
 #include "engine/api_pyramid.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "engine/constants.h"
@@ -58,8 +57,7 @@ Status build(const std::shared_ptr<const VolumeData>& source, const plc_paramete
   plc_parameters& p = pyramid.parameters;
   VolumeView volume = source->view;
   // Before all its voxels are looked at.
-  std::array<int64_t, 3> padded{};
-  if (Status s = pad_dims(volume.dims, kPadVoxels, padded); !s.ok()) return s;
+  if (Status s = check_padded(volume.dims, kPadVoxels); !s.ok()) return s;
   if (p.feature == PLC_FEATURE_GRADIENT_NORM) {
     if (Status s =
             gradient_norm(volume, p.feature_sigma, host.schedule, host.simd, pyramid.feature);

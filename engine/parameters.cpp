@@ -169,9 +169,7 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
     }
   }
   if (std::isnan(p.pad_value)) p.pad_value = above ? p.window_low : p.window_high;
-  std::array<int64_t, 3> padded = volume.dims;
-  for (auto& n : padded) n += int64_t{2} * kPadVoxels;
-  const int deepest = max_levels(padded, p.reduction);
+  const int deepest = max_levels(padded_dims(volume.dims, kPadVoxels), p.reduction);
   if (p.levels < 0 && p.level_iso_count > 0) p.levels = p.level_iso_count - 1;
   if (p.levels < 0) p.levels = std::min(3, deepest);
   return {};

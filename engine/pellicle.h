@@ -51,7 +51,8 @@
 #define PLC_API __attribute__((visibility("default")))
 #endif
 
-/* Enumerations are ints: a value that is none of an enumeration's may be passed, and is refused. */
+/* Enumerations are ints, in C++ too: any value may be passed. Where it is none of the enumeration's
+ * it is refused, or treated as is said there. */
 #ifdef __cplusplus
 #define PLC_INT : int
 extern "C" {

@@ -111,9 +111,7 @@ Status build_levels(const VolumeView& volume, const PyramidSpec& spec, const Exe
   try {
     pyramid.levels.reserve(static_cast<size_t>(spec.levels) + 1);
     PyramidLevel base;
-    for (size_t axis = 0; axis < 3; ++axis) {
-      base.dims[axis] = volume.dims[axis] + 2 * int64_t{spec.pad_voxels};
-    }
+    base.dims = padded_dims(volume.dims, spec.pad_voxels);
     base.voxel = volume.spacing;
     base.unit = *std::min_element(volume.spacing.begin(), volume.spacing.end());
     fill_base(volume, spec, executor, simd, base);
@@ -162,10 +160,14 @@ int max_levels(const std::array<int64_t, 3>& padded_dims, double reduction) {
   return levels;
 }
 
-Status pad_dims(const std::array<int64_t, 3>& dims, int pad_voxels,
-                std::array<int64_t, 3>& padded) {
-  padded = dims;
+std::array<int64_t, 3> padded_dims(const std::array<int64_t, 3>& dims, int pad_voxels) {
+  std::array<int64_t, 3> padded = dims;
   for (int64_t& dim : padded) dim += 2 * int64_t{pad_voxels};
+  return padded;
+}
+
+Status check_padded(const std::array<int64_t, 3>& dims, int pad_voxels) {
+  const std::array<int64_t, 3> padded = padded_dims(dims, pad_voxels);
   const int64_t plane = padded[0] * padded[1];
   if (plane < kMaxVoxels && plane * padded[2] < kMaxVoxels) return {};
   return {ErrorCode::kInvalidData, "image of " + voxels_text(padded) + " with its padding of " +
@@ -179,9 +181,8 @@ Status build_pyramid(const VolumeView& volume, const PyramidSpec& spec, const Ex
   Status status = check_volume(volume);
   if (status.ok()) status = check_spec(spec);
   if (!status.ok()) return status;
-  std::array<int64_t, 3> padded{};
-  status = pad_dims(volume.dims, spec.pad_voxels, padded);
-  if (status.ok()) status = check_depth(padded, spec);
+  status = check_padded(volume.dims, spec.pad_voxels);
+  if (status.ok()) status = check_depth(padded_dims(volume.dims, spec.pad_voxels), spec);
   if (status.ok()) status = build_levels(volume, spec, executor, simd, pyramid);
   if (!status.ok()) pyramid.levels.clear();
   return status;

@@ -59,8 +59,10 @@ int max_levels(const std::array<int64_t, 3>& padded_dims, double reduction);
 float base_value(const VolumeView& volume, const PyramidSpec& spec, double value);
 
 // The size of I_0: `dims`, of a volume that check_volume has passed, with the padding on every
-// side. kInvalidData: 2^31 voxels or more.
-Status pad_dims(const std::array<int64_t, 3>& dims, int pad_voxels, std::array<int64_t, 3>& padded);
+// side.
+std::array<int64_t, 3> padded_dims(const std::array<int64_t, 3>& dims, int pad_voxels);
+// kInvalidData: that is 2^31 voxels or more.
+Status check_padded(const std::array<int64_t, 3>& dims, int pad_voxels);
 
 // Builds levels 0 .. spec.levels. I_0 borrows volume.voxels, which must outlive the pyramid; 32-bit
 // integers, and what has a window beyond the range of floats, become floats. Errors:

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <string>
 #include <vector>
@@ -12,31 +11,15 @@
 #include "tests/sample_hosts.h"
 #include "tests/sample_steps.h"
 
-namespace {
-
+using namespace samples;
 using Catch::Matchers::Contains;
-using samples::Context;
-using Pyramid = samples::PyramidHandle;
-using Run = samples::RunHandle;
-using samples::advance;
-using samples::hash_now;
-using samples::pyramid_of;
-using samples::restore;
-using samples::run_of;
-using samples::saved;
-using samples::Scene;
-using samples::Surface;
-using samples::surface_of;
-using samples::volume_of;
-using samples::VolumeHandle;
-
-}  // namespace
+using Pyramid = PyramidHandle;
+using Run = RunHandle;
 
 TEST_CASE("a run in iterations, in levels and at once is the extraction", "[pellicle_run]") {
   const Scene s;
-  const Context context = samples::make_context(2);
-  const uint64_t whole =
-      plc_surface_hash(samples::extract(context.get(), s.image, s.parameters).get());
+  const Context context = make_context(2);
+  const uint64_t whole = plc_surface_hash(extract(context.get(), s.image, s.parameters).get());
   const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
   for (const plc_amount amount : {PLC_ONE_ITERATION, PLC_ONE_LEVEL, PLC_ALL_LEVELS}) {
     const Run run = run_of(context.get(), pyramid.get(), s.parameters);
@@ -51,7 +34,7 @@ TEST_CASE("a run in iterations, in levels and at once is the extraction", "[pell
     CHECK(plc_surface_hash(surface.get()) == whole);
     int64_t iterations = 0;
     for (int i = 0; i < plc_surface_level_count(surface.get()); ++i) {
-      iterations += samples::level_of(surface.get(), i).iterations;
+      iterations += level_of(surface.get(), i).iterations;
     }
     const int64_t expected = amount == PLC_ALL_LEVELS  ? 1
                              : amount == PLC_ONE_LEVEL ? 3
@@ -68,7 +51,7 @@ TEST_CASE("a run in iterations, in levels and at once is the extraction", "[pell
 TEST_CASE("the surface of a run is valid from the start on and after every iteration",
           "[pellicle_run]") {
   const Scene s;
-  const Context context = samples::make_context();
+  const Context context = make_context();
   const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
   const Run run = run_of(context.get(), pyramid.get(), s.parameters);
   CHECK(plc_surface_vertex_count(surface_of(context.get(), run.get()).get()) > 0);
@@ -85,13 +68,12 @@ TEST_CASE("the surface of a run is valid from the start on and after every itera
 
 TEST_CASE("a run that was cancelled goes on as if nothing had been", "[pellicle_run]") {
   const Scene s;
-  const Context context = samples::make_context();
-  const uint64_t whole =
-      plc_surface_hash(samples::extract(context.get(), s.image, s.parameters).get());
+  const Context context = make_context();
+  const uint64_t whole = plc_surface_hash(extract(context.get(), s.image, s.parameters).get());
   struct Stop {
     int calls = 0, every = 0;
   } stop{0, 13};
-  plc_extras extras = samples::no_extras();
+  plc_extras extras = no_extras();
   extras.progress = [](const plc_progress*, void* user) {
     auto& told = *static_cast<Stop*>(user);
     return ++told.calls % told.every == 0 ? 1 : 0;
@@ -113,18 +95,18 @@ TEST_CASE("a run that was cancelled goes on as if nothing had been", "[pellicle_
 
 TEST_CASE("a force that cancels, in any of the four calls, leaves the iteration undone",
           "[pellicle_run]") {
-  const samples::Volume volume = samples::ball({24, 24, 24});
-  const plc_image image = samples::image_of(volume);
-  const plc_parameters p = samples::gentle();
-  const Context context = samples::make_context();
+  const Volume volume = ball({24, 24, 24});
+  const plc_image image = image_of(volume);
+  const plc_parameters p = gentle();
+  const Context context = make_context();
   const Pyramid pyramid = pyramid_of(context.get(), image, p);
   int calls = 0, refuse = 0;
-  samples::Host host;
+  Host host;
   host.force = [&](const plc_force_points& points, float* forces) {
     for (int64_t i = 0; i < 3 * points.count; ++i) forces[i] = 0.02F * points.normals[i];
     return ++calls == refuse ? 1 : 0;
   };
-  plc_extras extras = samples::extras_of(host);
+  plc_extras extras = extras_of(host);
   const Run undisturbed = run_of(context.get(), pyramid.get(), p, &extras);
   const Run run = run_of(context.get(), pyramid.get(), p, &extras);
   for (int i = 0; i < 12; ++i) {
@@ -142,16 +124,15 @@ TEST_CASE("a force that cancels, in any of the four calls, leaves the iteration 
 
 TEST_CASE("a verdict may cancel, and is asked for again", "[pellicle_run]") {
   const Scene s;
-  const Context context = samples::make_context();
-  const uint64_t whole =
-      plc_surface_hash(samples::extract(context.get(), s.image, s.parameters).get());
+  const Context context = make_context();
+  const uint64_t whole = plc_surface_hash(extract(context.get(), s.image, s.parameters).get());
   const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
   int asked = 0;
-  samples::Host host;
+  Host host;
   host.level = [&](const plc_level_report&, const plc_surface*) {
     return ++asked % 3 == 0 ? PLC_VERDICT_ACCEPT : PLC_VERDICT_CANCEL;
   };
-  const plc_extras extras = samples::extras_of(host);
+  const plc_extras extras = extras_of(host);
   const Run run = run_of(context.get(), pyramid.get(), s.parameters, &extras);
   plc_run_state state{};
   state.struct_size = sizeof state;
@@ -177,17 +158,17 @@ TEST_CASE("a verdict may cancel, and is asked for again", "[pellicle_run]") {
 }
 
 TEST_CASE("a run that has failed has ended, and says so", "[pellicle_run]") {
-  const samples::Volume volume = samples::ball({24, 24, 24});
-  const plc_image image = samples::image_of(volume);
-  const plc_parameters p = samples::gentle();
-  const Context context = samples::make_context();
+  const Volume volume = ball({24, 24, 24});
+  const plc_image image = image_of(volume);
+  const plc_parameters p = gentle();
+  const Context context = make_context();
   const Pyramid pyramid = pyramid_of(context.get(), image, p);
-  samples::Host host;
+  Host host;
   host.force = [](const plc_force_points&, float* forces) {
     forces[0] = NAN;
     return 0;
   };
-  const plc_extras extras = samples::extras_of(host);
+  const plc_extras extras = extras_of(host);
   const Run run = run_of(context.get(), pyramid.get(), p, &extras);
   CHECK(plc_run_advance(context.get(), run.get(), PLC_ALL_LEVELS, nullptr) == PLC_INVALID_ARGUMENT);
   CHECK_THAT(plc_context_message(context.get()), Contains("not finite"));
@@ -201,14 +182,14 @@ TEST_CASE("a run that has failed has ended, and says so", "[pellicle_run]") {
 
 TEST_CASE("a run cannot be used from within its own callbacks", "[pellicle_run]") {
   const Scene s;
-  const Context context = samples::make_context(), other = samples::make_context();
+  const Context context = make_context(), other = make_context();
   const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
   struct Inner {
     plc_context* context;
     plc_run* run = nullptr;
     plc_status status = PLC_OK;
   } inner{other.get()};
-  plc_extras extras = samples::no_extras();
+  plc_extras extras = no_extras();
   extras.progress = [](const plc_progress*, void* user) {
     auto& i = *static_cast<Inner*>(user);
     i.status = plc_run_advance(i.context, i.run, PLC_ONE_ITERATION, nullptr);
@@ -224,7 +205,7 @@ TEST_CASE("a run cannot be used from within its own callbacks", "[pellicle_run]"
 
 TEST_CASE("handles go in any order", "[pellicle_run]") {
   const Scene s;
-  Context context = samples::make_context();
+  Context context = make_context();
   VolumeHandle volume = volume_of(context.get(), s.image, PLC_COPY);
   plc_pyramid* made = nullptr;
   REQUIRE(plc_pyramid_create(context.get(), volume.get(), &s.parameters, &made) == PLC_OK);
@@ -234,7 +215,7 @@ TEST_CASE("handles go in any order", "[pellicle_run]") {
   pyramid.reset();
   Surface surface = surface_of(context.get(), run.get());
   context.reset();
-  Context other = samples::make_context();
+  Context other = make_context();
   // What the first context made is still of use with another one, and nothing of it is in the
   // other's memory, which may go first.
   CHECK(advance(other.get(), run.get(), PLC_ONE_LEVEL).between_levels == 1);
@@ -244,16 +225,16 @@ TEST_CASE("handles go in any order", "[pellicle_run]") {
   REQUIRE(plc_context_memory(other.get(), &now, nullptr) == PLC_OK);
   CHECK(now == 0);
   other.reset();
-  const Context third = samples::make_context();
+  const Context third = make_context();
   CHECK(advance(third.get(), run.get(), PLC_ONE_LEVEL).between_levels == 1);
   run.reset();
   CHECK(plc_surface_vertex_count(surface.get()) > 0);
-  CHECK(samples::positions(surface.get(), PLC_SPACE_LPS).size() > 0);
+  CHECK(positions(surface.get(), PLC_SPACE_LPS).size() > 0);
 }
 
 TEST_CASE("one pyramid serves several runs, with other coefficients", "[pellicle_run]") {
   const Scene s;
-  const Context context = samples::make_context();
+  const Context context = make_context();
   const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
   plc_parameters softer = s.parameters;
   softer.curvature = 0.3;
@@ -266,7 +247,7 @@ TEST_CASE("one pyramid serves several runs, with other coefficients", "[pellicle
     advance(context.get(), run.get(), PLC_ALL_LEVELS);
     plc_parameters alone = p;
     CHECK(hash_now(context.get(), run.get()) ==
-          plc_surface_hash(samples::extract(context.get(), s.image, alone).get()));
+          plc_surface_hash(extract(context.get(), s.image, alone).get()));
   }
   // What the pyramid was made with is not the run's to change.
   for (const auto& change : std::vector<std::function<void(plc_parameters&)>>{
@@ -284,7 +265,7 @@ TEST_CASE("one pyramid serves several runs, with other coefficients", "[pellicle
 
 TEST_CASE("a pyramid tells its levels and their values", "[pellicle_run]") {
   const Scene s;
-  const Context context = samples::make_context();
+  const Context context = make_context();
   plc_parameters p = s.parameters;
   p.window_low = 0;
   p.window_high = 1;

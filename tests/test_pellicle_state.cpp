@@ -1,9 +1,7 @@
 // Runs of the C API as bytes: saved, restored, altered.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <cstring>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,26 +11,13 @@
 #include "tests/sample_hosts.h"
 #include "tests/sample_steps.h"
 
-namespace {
-
-using samples::Context;
-using Pyramid = samples::PyramidHandle;
-using Run = samples::RunHandle;
-using samples::advance;
-using samples::hash_now;
-using samples::pyramid_of;
-using samples::restore;
-using samples::run_of;
-using samples::saved;
-using samples::Scene;
-using samples::Surface;
-using samples::surface_of;
-
-}  // namespace
+using namespace samples;
+using Pyramid = PyramidHandle;
+using Run = RunHandle;
 
 TEST_CASE("a saved run goes on with the same bits, wherever it was saved", "[pellicle_state]") {
   const Scene s;
-  const Context one = samples::make_context(1), other = samples::make_context(3, PLC_SIMD_SCALAR);
+  const Context one = make_context(1), other = make_context(3, PLC_SIMD_SCALAR);
   const Pyramid pyramid = pyramid_of(one.get(), s.image, s.parameters);
   const Pyramid again = pyramid_of(other.get(), s.image, s.parameters);
   const Run run = run_of(one.get(), pyramid.get(), s.parameters);
@@ -55,17 +40,16 @@ TEST_CASE("a saved run goes on with the same bits, wherever it was saved", "[pel
 
 TEST_CASE("what sleeps is asleep in a restored run", "[pellicle_state]") {
   // The outside is calm long before the bottom of the hole is reached.
-  samples::Volume volume =
-      samples::sampled(samples::empty_volume({40, 40, 40}), [](const samples::Point& p) {
-        const double ball = 15 - samples::norm(p[0], p[1], p[2]);
-        const double hole = std::max(samples::norm(p[0], p[1], 0) - 5, -10 - p[2]);
-        return std::clamp(0.5 + std::min(ball, hole) / 4, 0.0, 1.0);
-      });
-  const plc_image image = samples::image_of(volume);
-  plc_parameters p = samples::parameters(0.5, 1);
+  Volume volume = sampled(empty_volume({40, 40, 40}), [](const Point& p) {
+    const double ball = 15 - norm(p[0], p[1], p[2]);
+    const double hole = std::max(norm(p[0], p[1], 0) - 5, -10 - p[2]);
+    return std::clamp(0.5 + std::min(ball, hole) / 4, 0.0, 1.0);
+  });
+  const plc_image image = image_of(volume);
+  plc_parameters p = parameters(0.5, 1);
   p.calm_speed = 1e-9;  // to the last iteration
   p.max_iterations = 80;
-  const Context context = samples::make_context(2);
+  const Context context = make_context(2);
   const Pyramid pyramid = pyramid_of(context.get(), image, p);
   const Run run = run_of(context.get(), pyramid.get(), p);
   plc_run_state state{};
@@ -83,15 +67,15 @@ TEST_CASE("what sleeps is asleep in a restored run", "[pellicle_state]") {
     REQUIRE(hash_now(context.get(), follower.get()) == hash_now(context.get(), run.get()));
   }
   // Some did sleep.
-  const auto moves = [](const plc_surface* surface) { return samples::level_of(surface, 1).moves; };
+  const auto moves = [](const plc_surface* surface) { return level_of(surface, 1).moves; };
   p.sleeping = 0;
   CHECK(moves(surface_of(context.get(), run.get()).get()) <
-        moves(samples::extract(context.get(), image, p).get()) * 3 / 4);
+        moves(extract(context.get(), image, p).get()) * 3 / 4);
 }
 
 TEST_CASE("a state that is none, or of something else, is refused in words", "[pellicle_state]") {
   const Scene s;
-  const Context context = samples::make_context();
+  const Context context = make_context();
   const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
   const Run run = run_of(context.get(), pyramid.get(), s.parameters);
   advance(context.get(), run.get(), PLC_ONE_LEVEL);
@@ -131,15 +115,15 @@ TEST_CASE("a state that is none, or of something else, is refused in words", "[p
   std::copy(quarter, quarter + 9, turned.image.direction);
   const Pyramid of_turned = pyramid_of(context.get(), turned.image, s.parameters);
   CHECK(refused(state, of_turned.get(), s.parameters) == other);
-  plc_extras extras = samples::no_extras();
+  plc_extras extras = no_extras();
   const plc_pin pin{{0, 0, 0}, 1};
   extras.pins = &pin;
   extras.pin_count = 1;
   CHECK(restore(context.get(), pyramid.get(), s.parameters, state, none, &extras) ==
         PLC_INVALID_DATA);
   // A force where there was none, and one of another space.
-  samples::Host host = samples::pushing(0.01F);
-  plc_extras forced = samples::extras_of(host);
+  Host host = pushing(0.01F);
+  plc_extras forced = extras_of(host);
   const auto with_force = [&](const std::vector<uint8_t>& bytes) {
     return restore(context.get(), pyramid.get(), s.parameters, bytes, none, &forced);
   };
@@ -160,12 +144,12 @@ TEST_CASE("a state that is none, or of something else, is refused in words", "[p
 TEST_CASE("a state that somebody has altered and sealed again is refused or harmless",
           "[pellicle_state]") {
   const Scene s;
-  const Context context = samples::make_context();
+  const Context context = make_context();
   const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
-  plc_extras extras = samples::no_extras();
+  plc_extras extras = no_extras();
   extras.level = [](const plc_level_report*, const plc_surface* surface, void*) {
-    samples::positions(surface, PLC_SPACE_LPS);
-    samples::faces(surface, PLC_SPACE_LPS);
+    positions(surface, PLC_SPACE_LPS);
+    faces(surface, PLC_SPACE_LPS);
     return PLC_VERDICT_CANCEL;
   };
   int taken = 0;
@@ -193,7 +177,7 @@ TEST_CASE("a state that somebody has altered and sealed again is refused or harm
         const int levels = plc_surface_level_count(surface);
         REQUIRE(levels <= s.parameters.levels + 1);
         for (int i = 0; i < levels; ++i) {
-          REQUIRE(samples::level_of(surface, i).level == s.parameters.levels - i);
+          REQUIRE(level_of(surface, i).level == s.parameters.levels - i);
         }
       }
     }
