@@ -61,14 +61,14 @@ bool centres_apart(const RiskStar& f, uint32_t k, const RiskStar& g, uint32_t i,
 
 }  // namespace
 
-RiskStar::RiskStar(const Mesh& mesh, uint32_t v, const Neighbors& ring)
-    : faces(ring.size()), padded(faces / kLanes * kLanes + kLanes) {
+RiskStar::RiskStar(const Mesh& mesh, uint32_t v)
+    : faces(mesh.valence(v)), padded(faces / kLanes * kLanes + kLanes) {
   const auto set = [&](uint32_t k, uint32_t w) {
     const Packed& p = mesh.packed[w];
     id[k] = w, x[k] = p.x, y[k] = p.y, z[k] = p.z;
   };
   set(0, v);
-  for (uint32_t k = 0; k < faces; ++k) set(k + 1, ring[k]);
+  for (uint32_t k = 0; k < faces; ++k) set(k + 1, mesh.neighbor(v, k));
   for (uint32_t k = faces + 1; k < padded; ++k) x[k] = x[0], y[k] = y[0], z[k] = z[0];
 }
 
@@ -99,19 +99,18 @@ Extent RiskStar::extent(const Stream& along) const {
   return e;
 }
 
-Risk::Risk(const Mesh& mesh, uint32_t v, const Neighbors& ring)
+Risk::Risk(const Mesh& mesh, uint32_t v)
     : mesh_(mesh),
       gap_(kRiskGap * static_cast<float>(mesh.delta)),
-      star_(mesh, v, ring),
+      star_(mesh, v),
       normal_(mesh.normal.at(v)),
       along_(star_.along(normal_)),
       extent_(star_.extent(along_)),
       room_(gap_ * length(normal_)) {}
 
 bool Risk::may_meet(uint32_t w) const {
-  const Neighbors ring = mesh_.ring(w);
-  if (ring.size() > kRiskRing) return true;
-  const RiskStar of_w(mesh_, w, ring);
+  if (mesh_.valence(w) > kRiskRing) return true;
+  const RiskStar of_w(mesh_, w);
   // The cheapest first: one plane for all faces of both.
   const Stream first = of_w.along(normal_);
   if (apart(extent_, of_w.extent(first), room_)) return false;

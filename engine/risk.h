@@ -27,7 +27,8 @@ struct RiskStar {
   static constexpr uint32_t kLanes = 8;
   using Stream = std::array<float, kRiskRing + 1>;
 
-  RiskStar(const Mesh& mesh, uint32_t v, const Neighbors& ring);
+  // valence of v <= kRiskRing.
+  RiskStar(const Mesh& mesh, uint32_t v);
   Vec3 at(uint32_t k) const { return {x[k], y[k], z[k]}; }
   uint32_t next(uint32_t k) const { return k + 1 == faces ? 1 : k + 2; }
   // Where all of them lie along an axis.
@@ -45,8 +46,8 @@ struct RiskStar {
 // What may meet the faces of one vertex.
 class Risk {
  public:
-  // ring: that of v, up to kRiskRing.
-  Risk(const Mesh& mesh, uint32_t v, const Neighbors& ring);
+  // valence of v <= kRiskRing.
+  Risk(const Mesh& mesh, uint32_t v);
   // False when planes that have kRiskGap room lie between the faces of v and those of w, but for
   // pairs of faces with a common vertex. v and w are not neighbours.
   bool may_meet(uint32_t w) const;

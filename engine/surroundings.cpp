@@ -1,7 +1,6 @@
 #include "engine/surroundings.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "engine/blocks.h"
 #include "engine/constants.h"
@@ -19,6 +18,28 @@ constexpr size_t kTaskVertices = 256;
 constexpr float kGroupBox = 8;
 // Nothing is turned so far.
 constexpr float kNone = -2;
+
+// A vertex and its neighbours, to be asked for again and again: where in the ring one stands is as
+// good as random, and no branch depends on it. Slots past the valence hold the vertex itself.
+class ClosedRing {
+ public:
+  ClosedRing(const Mesh& mesh, uint32_t v) : mesh_(mesh), v_(v), long_(mesh.valence(v) > kCommon) {
+    const RingView rings = mesh.rings();
+    for (uint32_t k = 0; k < kCommon; ++k) slots_[k] = rings.column(v, k);
+  }
+  bool contains(uint32_t w) const {
+    uint32_t found = static_cast<uint32_t>(w == v_);
+    for (uint32_t k = 0; k < kCommon; ++k) found |= static_cast<uint32_t>(slots_[k] == w);
+    return found != 0 || (long_ && mesh_.adjacent(v_, w));
+  }
+
+ private:
+  static constexpr uint32_t kCommon = 8;  // nearly every ring has no more
+  const Mesh& mesh_;
+  uint32_t v_;
+  bool long_;
+  uint32_t slots_[kCommon];
+};
 
 }  // namespace
 
@@ -132,27 +153,33 @@ void Surroundings::list_near(uint32_t v, uint32_t hits, const Scratch& scratch, 
   }
 }
 
-void Surroundings::judge(uint32_t v, uint32_t hits, const Scratch& scratch, Task& task) const {
+void Surroundings::judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task) const {
   const Vec3 p = mesh_.at(v), n = mesh_.normal.at(v);
   const float near = kMinApart * static_cast<float>(mesh_.delta);
-  const Neighbors ring = mesh_.ring(v);
-  std::optional<Risk> around;  // when something asks for it
-  bool risk = false;
+  const ClosedRing ring(mesh_, v);
+  scratch.turned.clear();
   for (uint32_t k = 0; k < hits; ++k) {
-    const uint32_t i = scratch.hits[k];
-    const uint32_t w = scratch.around.ids[i];
-    if (w == v || ring.contains(w) || !mesh_.alive(w)) continue;
+    const uint32_t w = scratch.around.ids[scratch.hits[k]];
+    if (ring.contains(w) || !mesh_.alive(w)) continue;
     if (squared_distance(p, mesh_.at(w)) < near * near) {
       task.too_near.push_back({std::min(v, w), std::max(v, w)});
     }
-    if (dot(n, mesh_.normal.at(w)) > kRiskDot) continue;
-    if (!around && ring.size() <= kRiskRing) around.emplace(mesh_, v, ring);
-    if (!around || around->may_meet(w)) {
-      task.at_risk.push_back(w);
-      risk = true;
+    if (dot(n, mesh_.normal.at(w)) <= kRiskDot) scratch.turned.push_back(w);
+  }
+  if (!scratch.turned.empty()) list_risk(v, scratch.turned, task);
+}
+
+void Surroundings::list_risk(uint32_t v, const Vector<uint32_t>& turned, Task& task) const {
+  const size_t before = task.at_risk.size();
+  if (mesh_.valence(v) > kRiskRing) {
+    task.at_risk.insert(task.at_risk.end(), turned.begin(), turned.end());
+  } else {
+    const Risk risk(mesh_, v);
+    for (const uint32_t w : turned) {
+      if (risk.may_meet(w)) task.at_risk.push_back(w);
     }
   }
-  if (risk) task.at_risk.push_back(v);
+  if (task.at_risk.size() > before) task.at_risk.push_back(v);
 }
 
 }  // namespace plc

@@ -52,6 +52,7 @@ class Surroundings {
     SpatialHash::Collected around;  // the group
     Vector<float> streams[6];       // their places and normals
     Vector<uint32_t> hits;
+    Vector<uint32_t> turned;
   };
   enum class Wanted { kNear, kNearAndRisk };
   void search(const Vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted);
@@ -59,7 +60,9 @@ class Surroundings {
   void search_group(const uint32_t* due, size_t count, Wanted wanted, Scratch& scratch,
                     Task& task) const;
   void list_near(uint32_t v, uint32_t hits, const Scratch& scratch, Task& task) const;
-  void judge(uint32_t v, uint32_t hits, const Scratch& scratch, Task& task) const;
+  void judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task) const;
+  // turned: what is turned against v, and near enough.
+  void list_risk(uint32_t v, const Vector<uint32_t>& turned, Task& task) const;
   size_t group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high) const;
 
   const Mesh& mesh_;

@@ -11,6 +11,13 @@ constexpr uint32_t kMaxRing = 32;
 
 struct Edges {
   double x[kMaxRing + 1], y[kMaxRing + 1], z[kMaxRing + 1];
+  double longest = 0;  // squared
+  void set(size_t k, const Vec3& from, const Vec3& to) {
+    x[k] = static_cast<double>(to.x) - static_cast<double>(from.x);
+    y[k] = static_cast<double>(to.y) - static_cast<double>(from.y);
+    z[k] = static_cast<double>(to.z) - static_cast<double>(from.z);
+    longest = std::max(longest, x[k] * x[k] + y[k] * y[k] + z[k] * z[k]);
+  }
 };
 
 // Whether the edges, each to the left of the one before it about n, go around n once. q is
@@ -35,8 +42,8 @@ bool winds_once(const Edges& e, uint32_t count, double nx, double ny, double nz)
   return entries == 1;
 }
 
-// The edges e[0 .. count - 1] from the centre, the longest of which is the root of `longest`.
-bool edges_are_plain(Edges& e, uint32_t count, double longest) {
+// The edges e[0 .. count - 1] from the centre.
+bool edges_are_plain(Edges& e, uint32_t count) {
   e.x[count] = e.x[0];
   e.y[count] = e.y[0];
   e.z[count] = e.z[0];
@@ -52,7 +59,7 @@ bool edges_are_plain(Edges& e, uint32_t count, double longest) {
   }
   // det(n, e, e') is known to about 20 |n| |e| |e'| 2^-53; what is left of 1e-12 covers what the
   // roundings of the edges themselves and of winds_once may turn.
-  const double doubt = 1e-12 * longest * (std::abs(nx) + std::abs(ny) + std::abs(nz));
+  const double doubt = 1e-12 * e.longest * (std::abs(nx) + std::abs(ny) + std::abs(nz));
   bool plain = true;
   for (uint32_t k = 0; k < count; ++k) {
     plain &= cx[k] * nx + cy[k] * ny + cz[k] * nz > doubt;
@@ -65,26 +72,20 @@ bool edges_are_plain(Edges& e, uint32_t count, double longest) {
 bool fan_is_plain(const Vec3& centre, const Vec3* ring, size_t count) {
   if (count > kMaxRing || count < 3) return false;
   Edges e;
-  double longest = 0;
-  for (size_t k = 0; k < count; ++k) {
-    e.x[k] = static_cast<double>(ring[k].x) - static_cast<double>(centre.x);
-    e.y[k] = static_cast<double>(ring[k].y) - static_cast<double>(centre.y);
-    e.z[k] = static_cast<double>(ring[k].z) - static_cast<double>(centre.z);
-    longest = std::max(longest, e.x[k] * e.x[k] + e.y[k] * e.y[k] + e.z[k] * e.z[k]);
-  }
-  return edges_are_plain(e, static_cast<uint32_t>(count), longest);
+  for (size_t k = 0; k < count; ++k) e.set(k, centre, ring[k]);
+  return edges_are_plain(e, static_cast<uint32_t>(count));
 }
 
 bool star_is_plain(const RingView& rings, const Packed* positions, uint32_t v) {
   const uint32_t count = rings.valence[v];
-  if (count > kMaxRing) return false;
-  Vec3 ring[kMaxRing];
-  for (uint32_t k = 0; k < count; ++k) {
-    const Packed& p = positions[rings.slot(v, k)];
-    ring[k] = {p.x, p.y, p.z};
-  }
+  if (count > kMaxRing || count < 3) return false;
   const Packed& p = positions[v];
-  return fan_is_plain({p.x, p.y, p.z}, ring, count);
+  Edges e;
+  for (uint32_t k = 0; k < count; ++k) {
+    const Packed& q = positions[rings.slot(v, k)];
+    e.set(k, {p.x, p.y, p.z}, {q.x, q.y, q.z});
+  }
+  return edges_are_plain(e, count);
 }
 
 }  // namespace plc

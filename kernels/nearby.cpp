@@ -32,12 +32,13 @@ uint32_t near_or_turned(const NearbyView& view, const NearbyQuery& q, uint32_t* 
         hn::Le(dot(load3(view.nx, view.ny, view.nz, i), normal), hn::Set(d, q.most));
     hit = hn::And(hit, hn::Or(turned, hn::Lt(squared, hn::Set(d, q.near_squared))));
     // Hits are few: their bits one by one cost less than compressing stores do.
-    uint8_t bytes[8] = {};
+    // As many bytes are read as were written: a longer load would wait for the store.
+    uint8_t bytes[8];
     hn::StoreMaskBits(d, hit, bytes);
-    uint64_t bits;
-    std::memcpy(&bits, bytes, sizeof bits);
+    uint32_t bits = 0;
+    std::memcpy(&bits, bytes, (kLanes + 7) / 8);
     for (; bits != 0; bits &= bits - 1) {
-      hits[count] = i + static_cast<uint32_t>(__builtin_ctzll(bits));
+      hits[count] = i + static_cast<uint32_t>(__builtin_ctz(bits));
       count += static_cast<uint32_t>(hits[count] < view.count);
     }
   }

@@ -148,8 +148,10 @@ void normals(const RingView& ring, const Packed* position, const Blocks& blocks,
   });
 }
 
+// With a constructor: as an aggregate GCC 12 clears all of it first.
 struct NormalAndDifferenceSum : NormalSum {
   Floats3 differences = zero3();
+  HWY_INLINE explicit NormalAndDifferenceSum(const Floats3& centre) : NormalSum{centre} {}
   HWY_INLINE void add(FloatMask has_slot, const Floats3& neighbour) {
     differences = differences + (neighbour - centre);  // +0 past the valence
     NormalSum::add(has_slot, neighbour);
@@ -160,7 +162,7 @@ void normals_and_laplacian(const RingView& ring, const Packed* position, const B
                            float* nx, float* ny, float* nz, Packed* laplacian) {
   for_lanes(ring, position, blocks, [&](uint32_t v) HWY_ATTR {
     const Floats valence = load_valence(ring, v);
-    NormalAndDifferenceSum walk{{load_packed(position + v)}};
+    NormalAndDifferenceSum walk(load_packed(position + v));
     walk_ring(ring, position, v, valence, walk);
     if (HWY_UNLIKELY(has_tails(valence))) {
       walk.differences = with_tails(ring, v, walk.differences, [&](uint32_t u) {

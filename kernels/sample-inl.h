@@ -11,12 +11,12 @@
 #define PELLICLE_KERNELS_SAMPLE_INL_H
 #endif
 
+#include <array>
 #include <cstring>
 #include <type_traits>
 
 #include "kernels/cells-inl.h"
 #include "kernels/image.h"
-#include "kernels/image_value.h"
 #include "kernels/vectors-inl.h"
 
 #if !PLC_SCALAR_TARGET
@@ -107,47 +107,65 @@ HWY_INLINE Floats sample_plane(const Voxel* plane, size_t row, const uint32_t* o
   return lerp(lerp(value(cell.x), value(cell.y), x), lerp(value(cell.z), value(cell.w), x), y);
 }
 
-// Any place, voxel by voxel: for vectors with a lane whose cell lies in the padding or at its
-// border, which are as rare as objects that the image cuts.
-template <class Voxel>
-HWY_NOINLINE void padded_corners(const ImageView& image, const int32_t* x, const int32_t* y,
-                                 const int32_t* z, float* corners) {
-  for (uint32_t lane = 0; lane < kLanes; ++lane) {
-    for (uint32_t c = 0; c < 8; ++c) {
-      corners[c * kLanes + lane] = image_value<Voxel>(image, x[lane] + static_cast<int32_t>(c & 1),
-                                                      y[lane] + static_cast<int32_t>(c >> 1 & 1),
-                                                      z[lane] + static_cast<int32_t>(c >> 2));
-    }
-  }
+// On one axis: the stored voxel nearest to one of the padded image, and whether it is that one.
+struct NearestStored {
+  Ints index;
+  FloatMask same;
+};
+HWY_INLINE NearestStored nearest_stored(Ints index, int32_t dim, int32_t pad) {
+  const IntTag di;
+  const Ints in_store = hn::Sub(index, hn::Set(di, pad));
+  const Ints nearest = hn::Min(hn::Max(in_store, hn::Zero(di)), hn::Set(di, dim - 2 * pad - 1));
+  return {nearest, hn::RebindMask(FloatTag(), hn::Eq(in_store, nearest))};
 }
 
+// Any place: for vectors with a lane whose cell lies in the padding or at its border, which are as
+// rare as objects that the image cuts.
 template <class Voxel>
-HWY_INLINE Floats sample_padded(const ImageView& image, const Cells& x, const Cells& y,
-                                const Cells& z) {
+HWY_NOINLINE Floats sample_padded(const ImageView& image, const Cells& x, const Cells& y,
+                                  const Cells& z) {
   const FloatTag d;
   const IntTag di;
-  // On the way through the padding: between equal values lies the same value.
   const int32_t pad = image.form.pad;
+  // On the way through the padding: between equal values lies the same value.
   const auto beyond = [&](Ints index, int32_t dim) HWY_ATTR {
     return hn::Or(hn::Gt(hn::Set(di, pad - 1), index), hn::Gt(index, hn::Set(di, dim - pad - 1)));
   };
+  const Floats pad_value = hn::Set(d, image.form.pad_value);
   if (hn::AllTrue(di, hn::Or(hn::Or(beyond(x.index, image.dims[0]), beyond(y.index, image.dims[1])),
                              beyond(z.index, image.dims[2])))) {
-    return hn::Set(d, image.form.pad_value);
+    return pad_value;
   }
-  alignas(64) int32_t at[3][kLanes];
-  alignas(64) float corners[8 * kLanes];
-  hn::Store(x.index, di, at[0]);
-  hn::Store(y.index, di, at[1]);
-  hn::Store(z.index, di, at[2]);
-  padded_corners<Voxel>(image, at[0], at[1], at[2], corners);
-  const auto along_x = [&](uint32_t c) HWY_ATTR {
-    return lerp(hn::Load(d, corners + c * kLanes), hn::Load(d, corners + (c + 1) * kLanes),
-                x.fraction);
+  const auto both = [&](Ints index, int32_t dim) HWY_ATTR {
+    return std::array<NearestStored, 2>{nearest_stored(index, dim, pad),
+                                        nearest_stored(hn::Add(index, hn::Set(di, 1)), dim, pad)};
   };
-  const Floats below = lerp(along_x(0), along_x(2), y.fraction);
-  const Floats above = lerp(along_x(4), along_x(6), y.fraction);
-  return lerp(below, above, z.fraction);
+  const auto xs = both(x.index, image.dims[0]), ys = both(y.index, image.dims[1]),
+             zs = both(z.index, image.dims[2]);
+  const int32_t row = image.dims[0] - 2 * pad, rows = image.dims[1] - 2 * pad;
+  const auto* voxels = static_cast<const Voxel*>(image.data);
+  const VoxelValues<Voxel> value(image.form);
+  const auto corner = [&](const NearestStored& i, const NearestStored& j,
+                          const NearestStored& k) HWY_ATTR {
+    const hn::RebindToUnsigned<IntTag> du;
+    alignas(64) uint32_t at[kLanes];
+    alignas(64) float voxel[kLanes];
+    hn::Store(
+        hn::BitCast(
+            du, hn::Add(i.index, hn::Mul(hn::Set(di, row),
+                                         hn::Add(j.index, hn::Mul(k.index, hn::Set(di, rows)))))),
+        du, at);
+    for (uint32_t l = 0; l < kLanes; ++l) voxel[l] = static_cast<float>(voxels[at[l]]);
+    return hn::IfThenElse(hn::And(hn::And(i.same, j.same), k.same), value(hn::Load(d, voxel)),
+                          pad_value);
+  };
+  const auto plane = [&](const NearestStored& k) HWY_ATTR {
+    const auto along_x = [&](const NearestStored& j) HWY_ATTR {
+      return lerp(corner(xs[0], j, k), corner(xs[1], j, k), x.fraction);
+    };
+    return lerp(along_x(ys[0]), along_x(ys[1]), y.fraction);
+  };
+  return lerp(plane(zs[0]), plane(zs[1]), z.fraction);
 }
 
 // The image's value at p; Voxel is that of image.form.type. The bits of the scalar twin, and of the

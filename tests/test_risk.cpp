@@ -24,7 +24,7 @@ void fill_spheres(Mesh& mesh, double gap) {
 }
 
 bool may_meet(const Mesh& mesh, uint32_t v, uint32_t w) {
-  return plc::Risk(mesh, v, mesh.ring(v)).may_meet(w);
+  return plc::Risk(mesh, v).may_meet(w);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ Found expected(const Mesh& mesh, const plc::Vector<uint32_t>& due) {
       if (w == v || !mesh.alive(w) || ring.contains(w) || squared > far * far) continue;
       if (squared < near * near) found.too_near.push_back({std::min(v, w), std::max(v, w)});
       const bool turned = plc::dot(mesh.normal.at(v), mesh.normal.at(w)) <= plc::kRiskDot;
-      if (turned && plc::Risk(mesh, v, ring).may_meet(w)) found.at_risk.insert({v, w});
+      if (turned && plc::Risk(mesh, v).may_meet(w)) found.at_risk.insert({v, w});
     }
   }
   std::sort(found.too_near.begin(), found.too_near.end());
