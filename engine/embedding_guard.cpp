@@ -48,6 +48,20 @@ void include(FaceBox& all, const FaceBox& box) {
   }
 }
 
+// Around a vertex, once its ring has changed; the vertex stays where it is.
+bool ring_is_plain(const Mesh& mesh, const Proposal::RingChange& change) {
+  const uint32_t v = change.vertex;
+  Fan fan(mesh.at(v));
+  const uint32_t d = mesh.valence(v);
+  for (uint32_t k = 0; k < d; ++k) {
+    const uint32_t w = mesh.neighbor(v, k);
+    if (w == change.gone) continue;
+    if (w != change.neighbor || change.keeps) fan.add(mesh.at(w));
+    if (w == change.neighbor) fan.add(change.place);
+  }
+  return fan.is_plain();
+}
+
 }  // namespace
 
 Proposal propose_creation(const Mesh& mesh, const Edge& e) {
@@ -63,6 +77,11 @@ Proposal propose_creation(const Mesh& mesh, const Edge& e) {
   }
   proposal.plain = fan_is_plain(place, around.data(), around.size());
   proposal.removed_edge = {e.u, e.v};
+  // Around a, u comes after v; around b, v after u.
+  proposal.rings = {{e.u, e.v, place, false},
+                    {e.v, e.u, place, false},
+                    {e.a, e.v, place, true},
+                    {e.b, e.u, place, true}};
   return proposal;
 }
 
@@ -70,6 +89,10 @@ Proposal propose_inversion(const Mesh& mesh, const Edge& e) {
   Proposal proposal;
   proposal.faces = {face_of(mesh, e.u, e.a, e.b), face_of(mesh, e.a, e.v, e.b)};
   proposal.removed_edge = {e.u, e.v};
+  proposal.rings = {{e.u, ~0U, {}, false, e.v},
+                    {e.v, ~0U, {}, false, e.u},
+                    {e.a, e.v, mesh.at(e.b), true},
+                    {e.b, e.u, mesh.at(e.a), true}};
   return proposal;
 }
 
@@ -84,6 +107,14 @@ Proposal propose_deletion(const Mesh& mesh, const Edge& e, Vec3 place) {
   }
   proposal.plain = fan_is_plain(place, around.data(), around.size());
   proposal.removed_corners = {e.u, e.v};
+  // First those that u has beside v, from b to a, then the others of v.
+  bool of_u = true;
+  for (const uint32_t w : ring) {
+    if (proposal.rings.size() == Proposal::kMaxRings) break;
+    const uint32_t other = w == e.a || w == e.b ? e.v : ~0U;
+    proposal.rings.push_back({w, of_u ? e.u : e.v, place, false, other});
+    of_u &= w != e.a;
+  }
   return proposal;
 }
 
@@ -150,7 +181,7 @@ Proposal propose_axial(const Mesh& mesh, const AxialPlan& plan) {
   return proposal;
 }
 
-void EmbeddingGuard::take(const Proposal& proposal) {
+void EmbeddingGuard::take(const Mesh& mesh, const Proposal& proposal) {
   faces_.clear();
   boxes_.clear();
   for (const auto& face : proposal.faces) {
@@ -161,10 +192,26 @@ void EmbeddingGuard::take(const Proposal& proposal) {
   for (const FaceBox& box : boxes_) include(all, box);
   std::copy_n(all.low, 3, box_.low);
   std::copy_n(all.high, 3, box_.high);
+  plain_.clear();
+  for (const auto& change : proposal.rings) {
+    if (ring_is_plain(mesh, change)) plain_.push_back(change.vertex);
+  }
+  plain_of_face_.clear();
+  for (const auto& face : proposal.faces) plain_of_face_.push_back(plain_corners(face.id.data()));
+}
+
+// Which of plain_ are corners of a face.
+uint32_t EmbeddingGuard::plain_corners(const uint32_t* abc) const {
+  uint32_t bits = 0;
+  for (size_t i = 0; i < plain_.size(); ++i) {
+    const uint32_t v = plain_[i];
+    bits |= static_cast<uint32_t>(v == abc[0] || v == abc[1] || v == abc[2]) << i;
+  }
+  return bits;
 }
 
 bool EmbeddingGuard::embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal) {
-  take(proposal);
+  take(mesh, proposal);
   if (!proposal.plain && new_faces_meet()) return false;
   const float reach = kFaceReach * static_cast<float>(mesh.delta);
   FaceBox searched = widened(box_);
@@ -184,7 +231,7 @@ bool EmbeddingGuard::embeds(const Mesh& mesh, const SpatialHash& hash, const Pro
 
 bool EmbeddingGuard::embeds_beside(const Mesh& mesh, const Proposal& proposal,
                                    const Vector<uint32_t>& centres) {
-  take(proposal);
+  take(mesh, proposal);
   return clear_of(mesh, proposal, centres.data(), centres.size(),
                   [](uint32_t, uint32_t, uint32_t) { return true; });
 }
@@ -215,9 +262,14 @@ bool EmbeddingGuard::clear_of(const Mesh& mesh, const Proposal& proposal, const 
       if (!boxes_overlap(box, all) || !counts(x, a, b)) continue;
       if (removed(a) || removed(b) || removed_edge(x, a, b)) continue;
       const uint32_t corners[3] = {x, a, b};
+      const uint32_t plain = plain_corners(corners);
       const Triangle face = make_triangle(at, corners);
       for (size_t i = 0; i < boxes_.size(); ++i) {
-        if (boxes_overlap(boxes_[i], box) && triangles_intersect(faces_[i], face)) return false;
+        // Faces around a plain vertex do not meet each other.
+        if ((plain & plain_of_face_[i]) == 0 && boxes_overlap(boxes_[i], box) &&
+            triangles_intersect(faces_[i], face)) {
+          return false;
+        }
       }
     }
   }

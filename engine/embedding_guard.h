@@ -23,6 +23,17 @@ struct Proposal {
   Vector<uint32_t> removed_corners;
   // ... and those that have both ends of this edge.
   std::array<uint32_t, 2> removed_edge{~0U, ~0U};
+  // What becomes of the rings of the vertices that stay and have new faces.
+  struct RingChange {
+    uint32_t vertex;
+    uint32_t neighbor = ~0U;  // goes; where `keeps`, it stays and the place comes after it
+    Vec3 place{};             // comes
+    bool keeps = false;
+    uint32_t gone = ~0U;  // another neighbour that goes
+  };
+  // Up to kMaxRings; where some are not known, more is tested one by one.
+  Vector<RingChange> rings;
+  static constexpr size_t kMaxRings = 32;
   // The new faces are known to have an area and to meet each other nowhere (vertex_star.h).
   bool plain = false;
 };
@@ -48,8 +59,9 @@ class EmbeddingGuard {
   const Box3& box() const { return box_; }
 
  private:
-  void take(const Proposal& proposal);
+  void take(const Mesh& mesh, const Proposal& proposal);
   bool new_faces_meet() const;
+  uint32_t plain_corners(const uint32_t* abc) const;
   template <typename Counts>
   bool clear_of(const Mesh& mesh, const Proposal& proposal, const uint32_t* ids, size_t count,
                 const Counts& counts) const;
@@ -57,6 +69,9 @@ class EmbeddingGuard {
   Vector<Triangle> faces_;  // the new ones
   Vector<FaceBox> boxes_;
   Box3 box_{};
+  // Those of `rings` around which no faces will meet each other; which of them each new face has.
+  Vector<uint32_t> plain_;
+  Vector<uint32_t> plain_of_face_;
   SpatialHash::Collected around_;
 };
 
