@@ -29,12 +29,8 @@ Triangle triangle_of(const Proposal::Face& face) {
 }
 
 bool contains(const FaceBox& box, const Packed& p) {
-  const float at[4] = {p.x, p.y, p.z, 0};
-  int outside = 0;
-  for (int k = 0; k < 4; ++k) {
-    outside |= static_cast<int>(at[k] < box.low[k]) | static_cast<int>(at[k] > box.high[k]);
-  }
-  return outside == 0;
+  const Four at = load_four(p);
+  return overlap_four(at, at, load_four(box.low), load_four(box.high));
 }
 
 FaceBox widened(const Box3& box) {

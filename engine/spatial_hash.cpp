@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
 #include "engine/blocks.h"
 #include "engine/constants.h"
+#include "engine/four.h"
 #include "pyramid/memory.h"
 
 namespace plc {
@@ -15,9 +15,6 @@ namespace {
 // Buckets are sorted in this many parts, each by itself.
 constexpr uint32_t kParts = 16;
 constexpr size_t kBlock = 4096;  // vertices per task
-
-// One record at a time: GCC and clang make what they have of it.
-using Four = float __attribute__((vector_size(16)));
 
 }  // namespace
 
@@ -154,13 +151,9 @@ void SpatialHash::collect(const Mesh& mesh, Vec3 low, Vec3 high, Collected& out)
   count = 0;
   // Without branches: whether a vertex lies within is as good as random.
   for (const uint32_t v : out.found) {
-    Four at;
-    std::memcpy(&at, &mesh.packed[v], sizeof at);
-    const auto outside = (at < from) | (at > to);
-    uint64_t halves[2];
-    std::memcpy(halves, &outside, sizeof halves);
+    const Four at = load_four(mesh.packed[v]);
     out.ids[count] = v;
-    count += static_cast<size_t>((halves[0] | halves[1]) == 0);
+    count += static_cast<size_t>(overlap_four(at, at, from, to));
   }
   out.ids.resize_uninitialized(count);
 }

@@ -12,10 +12,10 @@
 // All functions are exact on the given coordinates within the range of predicates.h, have no state
 // and are thread-safe.
 #pragma once
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/four.h"
 #include "engine/predicates.h"
 #include "kernels/ring.h"
 
@@ -55,12 +55,10 @@ struct alignas(32) FaceBox {
 };
 
 inline FaceBox face_box(const Packed& a, const Packed& b, const Packed& c) {
+  const Four pa = load_four(a), pb = load_four(b), pc = load_four(c);
   FaceBox box;
-  const float pa[4] = {a.x, a.y, a.z, 0}, pb[4] = {b.x, b.y, b.z, 0}, pc[4] = {c.x, c.y, c.z, 0};
-  for (int k = 0; k < 4; ++k) {
-    box.low[k] = std::min(std::min(pa[k], pb[k]), pc[k]);
-    box.high[k] = std::max(std::max(pa[k], pb[k]), pc[k]);
-  }
+  store_four(min_four(min_four(pa, pb), pc), box.low);
+  store_four(max_four(max_four(pa, pb), pc), box.high);
   return box;
 }
 inline FaceBox face_box(const Packed* positions, const uint32_t* abc) {
@@ -68,11 +66,7 @@ inline FaceBox face_box(const Packed* positions, const uint32_t* abc) {
 }
 
 inline bool boxes_overlap(const FaceBox& f, const FaceBox& g) {
-  int apart = 0;
-  for (int k = 0; k < 4; ++k) {
-    apart |= static_cast<int>(f.low[k] > g.high[k]) | static_cast<int>(g.low[k] > f.high[k]);
-  }
-  return apart == 0;
+  return overlap_four(load_four(f.low), load_four(f.high), load_four(g.low), load_four(g.high));
 }
 
 // The faces f and g (three ids each) of a mesh of floats. Boxes first: the cheapest way to no.

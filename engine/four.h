@@ -1,0 +1,38 @@
+// Four floats at once where there is no kernel: GCC and Clang make what they have of it.
+#pragma once
+#include <cstdint>
+#include <cstring>
+
+#include "kernels/ring.h"
+
+namespace plc {
+
+using Four = float __attribute__((vector_size(16)));
+
+inline Four load_four(const float* four) {
+  Four f;
+  std::memcpy(&f, four, sizeof f);
+  return f;
+}
+inline Four load_four(const Packed& p) {
+  return load_four(&p.x);
+}
+inline void store_four(Four f, float* four) {
+  std::memcpy(four, &f, sizeof f);
+}
+inline Four min_four(Four a, Four b) {
+  return b < a ? b : a;
+}
+inline Four max_four(Four a, Four b) {
+  return a < b ? b : a;
+}
+
+// Whether [low, high] and [other_low, other_high] overlap in every lane; closed.
+inline bool overlap_four(Four low, Four high, Four other_low, Four other_high) {
+  const auto apart = (low > other_high) | (other_low > high);
+  uint64_t halves[2];
+  std::memcpy(halves, &apart, sizeof halves);
+  return (halves[0] | halves[1]) == 0;
+}
+
+}  // namespace plc
