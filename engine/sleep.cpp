@@ -124,12 +124,16 @@ void Sleep::observe() {
       }
     }
   });
-  for (size_t task = 0; task < block_count(awake_.size(), kTaskBlocks); ++task) {
+  // Several tasks may write the same 0.
+  executor_.run(block_count(awake_.size(), kTaskBlocks), [&](size_t task) {
     for (const uint32_t v : found_[task]) {
       const uint32_t d = mesh_.valence(v);
-      for (uint32_t k = 0; k < d; ++k) mesh_.calm[mesh_.neighbor(v, k)] = 0;
+      for (uint32_t k = 0; k < d; ++k) {
+        std::atomic_ref<uint8_t>(mesh_.calm[mesh_.neighbor(v, k)])
+            .store(0, std::memory_order_relaxed);
+      }
     }
-  }
+  });
 }
 
 void Sleep::restore(StateReader& from) {
