@@ -131,31 +131,35 @@ void SpatialHash::collect(const Mesh& mesh, Vec3 low, Vec3 high, Collected& out)
     count += start_[r.last + 1] - start_[r.first];
   }
   out.found.resize_uninitialized(count);
+  // Nothing that the loops write is among what they read: by pointers of their own.
+  const Packed* const packed = mesh.packed.data();
+  uint32_t* found = out.found.data();
   count = 0;
   for (const Run& r : out.runs) {
-    for (uint32_t i = start_[r.first]; i < start_[r.last + 1]; ++i) {
-      const uint32_t v = entries_[i];
-      __builtin_prefetch(&mesh.packed[v]);
-      out.found[count++] = v;
+    const uint32_t* const end = entries_.data() + start_[r.last + 1];
+    for (const uint32_t* e = entries_.data() + start_[r.first]; e != end; ++e) {
+      __builtin_prefetch(packed + *e);
+      found[count++] = *e;
     }
     if (late_.empty()) continue;
     for (uint32_t l = r.first >> kLateShift; l <= r.last >> kLateShift; ++l) {
       for (uint32_t i = late_head_[l]; i != kEnd; i = late_[i].next) {
         out.found.resize_uninitialized(out.found.size() + 1);
-        out.found[count++] = late_[i].id;
+        found = out.found.data();
+        found[count++] = late_[i].id;
       }
     }
   }
   const Four from{low.x, low.y, low.z, 0}, to{high.x, high.y, high.z, 0};
   out.ids.resize_uninitialized(out.found.size());
-  count = 0;
+  uint32_t* within = out.ids.data();
   // Without branches: whether a vertex lies within is as good as random.
-  for (const uint32_t v : out.found) {
-    const Four at = load_four(mesh.packed[v]);
-    out.ids[count] = v;
-    count += static_cast<size_t>(overlap_four(at, at, from, to));
+  for (const uint32_t* f = found; f != found + count; ++f) {
+    const Four at = load_four(packed[*f]);
+    *within = *f;
+    within += static_cast<size_t>(overlap_four(at, at, from, to));
   }
-  out.ids.resize_uninitialized(count);
+  out.ids.resize_uninitialized(static_cast<size_t>(within - out.ids.data()));
 }
 
 }  // namespace plc
