@@ -103,7 +103,7 @@ void Surroundings::fetch(Wanted wanted, Scratch& scratch) const {
   const size_t count = scratch.around.ids.size();
   const size_t padded = block_count(count, kRingLanes) * kRingLanes;
   for (auto& stream : scratch.streams) stream.resize(std::max(stream.size(), padded));
-  scratch.hits.resize(std::max<size_t>(scratch.hits.size(), count + kRingLanes));
+  scratch.hits.resize(std::max(scratch.hits.size(), count));
   auto& [x, y, z, nx, ny, nz] = scratch.streams;
   for (size_t i = 0; i < count; ++i) {
     const Packed& p = mesh_.packed[scratch.around.ids[i]];

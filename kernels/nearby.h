@@ -22,7 +22,7 @@ struct NearbyQuery {
 };
 
 // Writes the indices of what the query asks for, in ascending order, and returns how many. hits:
-// room for view.count and kRingLanes more. Bits do not depend on `simd`: sums go from x to z.
+// room for view.count. Bits do not depend on `simd`: sums go from x to z.
 uint32_t near_or_turned(SimdTarget simd, const NearbyView& view, const NearbyQuery& query,
                         uint32_t* hits);
 

@@ -1,6 +1,8 @@
 #include "engine/embedding_guard.h"
 
 #include <catch2/catch.hpp>
+#include <map>
+#include <set>
 
 #include "engine/constants.h"
 #include "engine/creation.h"
@@ -115,6 +117,44 @@ void for_each_operation(const Soup& soup, double delta, const Visit& visit) {
   }
 }
 
+using Places = std::vector<std::array<float, 3>>;
+
+// Around the vertex, as the change has it. From the smallest place on: rings have no beginning.
+Places from_smallest(Places ring) {
+  std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
+  return ring;
+}
+Places changed_ring(const Mesh& mesh, const Proposal::RingChange& change) {
+  Places ring;
+  const auto add = [&](plc::Vec3 p) { ring.push_back({p.x, p.y, p.z}); };
+  for (const uint32_t w : mesh.ring(change.vertex)) {
+    if (w == change.gone) continue;
+    if (w != change.neighbor || change.keeps) add(mesh.at(w));
+    if (w == change.neighbor) add(change.place);
+  }
+  return from_smallest(ring);
+}
+Places ring_of(const Mesh& mesh, uint32_t v) {
+  Places ring;
+  for (const uint32_t w : mesh.ring(v)) {
+    const plc::Vec3 p = mesh.at(w);
+    ring.push_back({p.x, p.y, p.z});
+  }
+  return from_smallest(ring);
+}
+
+// The vertices that stay and have new faces.
+std::set<uint32_t> touched(const Mesh& mesh, const Proposal& proposal) {
+  std::set<uint32_t> all;
+  for (const auto& face : proposal.faces) {
+    for (const uint32_t v : face.id) {
+      const auto& gone = proposal.removed_corners;
+      if (v < mesh.slots() && std::count(gone.begin(), gone.end(), v) == 0) all.insert(v);
+    }
+  }
+  return all;
+}
+
 Soup jittered(Soup soup, double amplitude, uint64_t seed) {
   samples::Random random(seed);
   for (double& c : soup.xyz) c += random.uniform(-amplitude, amplitude);
@@ -133,6 +173,27 @@ TEST_CASE("a proposal says exactly which faces its transformation makes and take
       CHECK(faces_of(mesh) == expected);
     });
   }
+}
+
+TEST_CASE("a proposal on one edge says what becomes of the rings around it", "[embedding_guard]") {
+  int proposals = 0;
+  for (const Soup& soup : {samples::sphere(1), samples::bipyramid(7, 1), samples::tube(3, 4, 0.5),
+                           samples::torus(3, 6, 2, 0.5)}) {
+    for_each_operation(soup, 1, [&](Mesh& mesh, const Proposal& proposal, const auto& apply) {
+      if (proposal.rings.empty()) return;  // an annular or axial transformation
+      ++proposals;
+      std::map<uint32_t, Places> expected;
+      for (const auto& change : proposal.rings) {
+        expected[change.vertex] = changed_ring(mesh, change);
+      }
+      CHECK(expected.size() == proposal.rings.size());
+      const std::set<uint32_t> all = touched(mesh, proposal);
+      CHECK(expected.size() == all.size());
+      apply();
+      for (const uint32_t v : all) CHECK(ring_of(mesh, v) == expected[v]);
+    });
+  }
+  CHECK(proposals > 300);
 }
 
 TEST_CASE("a transformation is admitted exactly where its surface does not meet itself",
