@@ -25,7 +25,7 @@ bool within_reach(const Streams3& s) {
 
 bool within_reach(const Buffer<Packed>& b) {
   return std::all_of(b.begin(), b.end(), [](const Packed& p) {
-    return within_reach(p.x) && within_reach(p.y) && within_reach(p.z);
+    return within_reach(p.x) && within_reach(p.y) && within_reach(p.z) && p.w == 0;
   });
 }
 
