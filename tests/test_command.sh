@@ -142,6 +142,10 @@ failures=$?
 works "surface" 0 "$pellicle" extract ball.nrrd --iso 0.5 --quiet -o surface.ply
 head -c 1000 surface.ply >cut.ply
 cp words.txt words.stl
+refused "no name of an output" "--output: the name of a file is empty" \
+  "$pellicle" extract ball.nrrd --iso 0.5 -o ""
+extract "no name of a report" "--report: the name of a file is empty" ball.nrrd --iso 0.5 --report ""
+refused "no name of a picture" "the name of a file is empty" "$pellicle" render surface.ply -o ""
 refused "no command" "subcommand" "$pellicle"
 refused "unknown command" "carve" "$pellicle" carve
 refused "check of a missing mesh" "missing.ply" "$pellicle" check missing.ply

@@ -364,6 +364,7 @@ void add_extract_options(CLI::App& command, ExtractOptions& options) {
       ->expected(1)
       ->group("Object")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  demand_file_names(command);
 }
 
 void read_structures(ExtractOptions& options) {

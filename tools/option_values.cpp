@@ -58,6 +58,16 @@ std::string text_of(double value) {
   return {buffer, result.ptr};
 }
 
+void demand_file_names(CLI::App& command) {
+  for (CLI::Option* option : command.get_options()) {
+    const std::string type = option->get_type_name();
+    if (!option->get_positional() && type != "FILE" && type != "OTHER") continue;
+    option->check([](const std::string& name) -> std::string {
+      return name.empty() ? "the name of a file is empty" : "";
+    });
+  }
+}
+
 void refuse_value(const std::string& option, const std::string& text, const std::string& expected) {
   throw CLI::ValidationError(option, "'" + text + "' is not " + expected);
 }

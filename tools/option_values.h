@@ -5,6 +5,10 @@
 #include <utility>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace plc::tools {
 
 // The shortest text that reads back as the value; "" for NaN.
@@ -17,6 +21,10 @@ int to_integer(const std::string& option, const std::string& text);
 // Separated by commas. `count` 0: any number of them, at least one.
 std::vector<double> to_numbers(const std::string& option, const std::string& text, size_t count);
 std::vector<int> to_integers(const std::string& option, const std::string& text, size_t count);
+
+// From now on the command refuses an empty name for any of its files: what its positional arguments
+// and its options of type FILE and OTHER are.
+void demand_file_names(CLI::App& command);
 
 [[noreturn]] void refuse_value(const std::string& option, const std::string& text,
                                const std::string& expected);
