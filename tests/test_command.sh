@@ -145,6 +145,9 @@ cp words.txt words.stl
 refused "no name of an output" "--output: the name of a file is empty" \
   "$pellicle" extract ball.nrrd --iso 0.5 -o ""
 extract "no name of a report" "--report: the name of a file is empty" ball.nrrd --iso 0.5 --report ""
+extract "no name of a mask" "--init" ball.nrrd --iso 0.5 --init mask=
+refused "no name of labels" "--labels: the name of a file is empty" \
+  "$pellicle" extract --labels "" -o out/mesh.ply
 refused "no name of a picture" "the name of a file is empty" "$pellicle" render surface.ply -o ""
 refused "no command" "subcommand" "$pellicle"
 refused "unknown command" "carve" "$pellicle" carve

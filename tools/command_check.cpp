@@ -7,7 +7,6 @@
 
 #include "tools/engine_handles.h"
 #include "tools/mesh_io.h"
-#include "tools/option_values.h"
 
 namespace plc::tools {
 
@@ -124,7 +123,6 @@ void add_check_options(CLI::App& command, CheckOptions& options) {
       ->required()
       ->type_name("");
   command.add_flag("--json", options.json, "JSON instead of a table");
-  demand_file_names(command);
 }
 
 int run_check(const CheckOptions& options) {

@@ -197,7 +197,6 @@ void add_measure_options(CLI::App& command, MeasureOptions& options) {
                   "vertices, NaN where there is none; .vtp or .ply")
       ->type_name("FILE");
   command.add_option("--json", options.json, "All numbers as JSON")->type_name("FILE");
-  demand_file_names(command);
 }
 
 int run_measure(const MeasureOptions& options) {

@@ -99,7 +99,6 @@ void add_phantom_options(CLI::App& command, PhantomArguments& arguments) {
   declare.files();
   declare.grid();
   declare.shape();
-  demand_file_names(command);
 }
 
 int run_phantom(const PhantomArguments& arguments) {

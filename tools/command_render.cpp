@@ -58,7 +58,6 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   text("--azimuth", "DEGREES", "0", "Direction that is looked from: 0 front, 90 left, 180 back",
        [&](const std::string& s) { options.view.azimuth = to_number("--azimuth", s); })
       ->excludes(view);
-  demand_file_names(command);
   text("--elevation", "DEGREES", "0", "90 looks from the top, -90 from the bottom",
        [&](const std::string& s) {
          options.view.elevation = to_number("--elevation", s);

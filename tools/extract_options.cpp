@@ -83,10 +83,10 @@ void read_init(const std::string& text, ExtractOptions& o) {
   } else if (const char* seeds = behind(text, "seeds")) {
     p.init = PLC_INIT_SEEDS;
     o.seeds = read_seeds(seeds);
-  } else if (const char* mask = behind(text, "mask")) {
+  } else if (const char* mask = behind(text, "mask"); mask != nullptr && *mask != 0) {
     p.init = PLC_INIT_MASK;
     o.init_file = mask;
-  } else if (const char* mesh = behind(text, "mesh")) {
+  } else if (const char* mesh = behind(text, "mesh"); mesh != nullptr && *mesh != 0) {
     p.init = PLC_INIT_MESH;
     o.init_file = mesh;
   } else {
@@ -364,7 +364,6 @@ void add_extract_options(CLI::App& command, ExtractOptions& options) {
       ->expected(1)
       ->group("Object")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  demand_file_names(command);
 }
 
 void read_structures(ExtractOptions& options) {

@@ -21,6 +21,7 @@
 #include "tools/command_measure.h"
 #include "tools/command_phantom.h"
 #include "tools/command_render.h"
+#include "tools/option_values.h"
 #include "tools/slicer_description.h"
 #include "tools/volume_io.h"
 
@@ -69,6 +70,9 @@ class Command {
     add_measure_options(*measure_, measure_options_);
     add_phantom_options(*phantom_, phantom_arguments_);
     add_render_options(*render_, render_options_);
+    for (CLI::App* command : {extract_, check_, measure_, phantom_, render_}) {
+      demand_file_names(*command);
+    }
   }
 
   int run(int argc, char** argv) {

@@ -22,8 +22,8 @@ int to_integer(const std::string& option, const std::string& text);
 std::vector<double> to_numbers(const std::string& option, const std::string& text, size_t count);
 std::vector<int> to_integers(const std::string& option, const std::string& text, size_t count);
 
-// From now on the command refuses an empty name for any of its files: what its positional arguments
-// and its options of type FILE and OTHER are.
+// The command refuses an empty name for any of its files from now on: those are its positional
+// arguments, and its options of type FILE and OTHER so far.
 void demand_file_names(CLI::App& command);
 
 [[noreturn]] void refuse_value(const std::string& option, const std::string& text,

@@ -6,6 +6,7 @@
 
 #include "tests/fuzz/input.h"
 #include "tools/extract_options.h"
+#include "tools/option_values.h"
 
 namespace fuzz {
 
@@ -29,6 +30,7 @@ void options(Bytes words) {
   CLI::App app;
   plc::tools::ExtractOptions options;
   plc::tools::add_extract_options(app, options);
+  plc::tools::demand_file_names(app);
   std::vector<std::string> reversed = words_of(words);
   std::reverse(reversed.begin(), reversed.end());  // as CLI11 wants them
   try {
