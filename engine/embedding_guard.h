@@ -4,7 +4,7 @@
 
 #include "engine/annular.h"
 #include "engine/axial.h"
-#include "engine/box_lanes.h"
+#include "kernels/box_lanes.h"
 #include "engine/spatial_hash.h"
 #include "engine/triangle_intersection.h"
 #include "pyramid/memory.h"

@@ -20,6 +20,7 @@ Evolution::Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, cons
                      const EvolutionOptions& options)
     : mesh_(mesh),
       schedule_(schedule),
+      simd_(simd),
       slow_vertices_(options.slow_vertices),
       sleep_(mesh, schedule, options.calm_speed),
       dynamics_(mesh, schedule, simd, model),
@@ -75,7 +76,7 @@ void Evolution::check_all(Seconds& seconds, OperationCounts& counts) {
 }
 
 bool Evolution::embedded() {
-  const auto meeting = meeting_faces(mesh_, schedule_);
+  const auto meeting = meeting_faces(mesh_, schedule_, simd_);
   for (const auto& face : meeting) {
     for (const uint32_t v : face) {
       mesh_.risk[v] = Mesh::kNearRisk;

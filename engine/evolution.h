@@ -59,6 +59,7 @@ class Evolution {
  private:
   Mesh& mesh_;
   const Schedule& schedule_;
+  SimdTarget simd_;
   bool slow_vertices_;
   Sleep sleep_;
   Dynamics dynamics_;

@@ -27,12 +27,19 @@ inline Four max_four(Four a, Four b) {
   return a < b ? b : a;
 }
 
+// Whether no lane of a mask is set.
+inline bool no_lane(int32_t __attribute__((vector_size(16))) mask) {
+  uint64_t halves[2];
+  std::memcpy(halves, &mask, sizeof halves);
+  return (halves[0] | halves[1]) == 0;
+}
+inline bool same_four(Four a, Four b) {
+  return no_lane(a != b);
+}
+
 // Whether [low, high] and [other_low, other_high] overlap in every lane; closed.
 inline bool overlap_four(Four low, Four high, Four other_low, Four other_high) {
-  const auto apart = (low > other_high) | (other_low > high);
-  uint64_t halves[2];
-  std::memcpy(halves, &apart, sizeof halves);
-  return (halves[0] | halves[1]) == 0;
+  return no_lane((low > other_high) | (other_low > high));
 }
 
 }  // namespace plc

@@ -13,13 +13,28 @@
 namespace plc {
 namespace {
 
-// Vertices and nodes per task.
-constexpr size_t kVertexBlock = 512;
+// Per task: vertices to list faces of, nodes to build; vertices and nodes of leaves to search.
+constexpr size_t kVertexBlock = 128;
 constexpr size_t kNodeBlock = 128;
+constexpr size_t kStarBlock = 128;
+constexpr size_t kSearchBlock = 4;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 uint32_t lowest_bit(uint32_t mask) {
   return static_cast<uint32_t>(__builtin_ctz(mask));
+}
+
+// visit(index) of those that are not 0, ascending. They are few: eight at a time.
+template <typename Visit>
+void for_set_bytes(const uint8_t* bytes, uint32_t count, const Visit& visit) {
+  for (uint32_t i = 0; i < count; ++i) {
+    uint64_t eight = 0;
+    while (i + sizeof eight <= count &&
+           (std::memcpy(&eight, bytes + i, sizeof eight), eight == 0)) {
+      i += sizeof eight;
+    }
+    if (i < count && bytes[i] != 0) visit(i);
+  }
 }
 
 }  // namespace
@@ -42,22 +57,30 @@ void MeetingSearch::list_vertices(const Mesh& mesh) {
     if (listed_[v] == 0) vertices_.push_back(v);
     listed_[v] = 1;
   };
-  for (uint32_t v = 0; v < mesh.slots; ++v) {
-    if (mesh.marks != nullptr) {
-      // Marks are few: eight at a time.
-      uint64_t eight = 0;
-      while (v + sizeof eight <= mesh.slots &&
-             (std::memcpy(&eight, mesh.marks + v, sizeof eight), eight == 0)) {
-        v += sizeof eight;
-      }
-      if (v == mesh.slots) break;
-    }
-    if (!mesh.marked(v) || mesh.rings.valence[v] == 0) continue;
-    list(v);
-    if (mesh.marks == nullptr) continue;
-    for (uint32_t k = 0; k < mesh.rings.valence[v]; ++k) list(mesh.rings.slot(v, k));
+  const auto with_neighbors = [&](uint32_t v) {
+    const uint32_t count = mesh.rings.valence[v];
+    if (count != 0) list(v);
+    for (uint32_t k = 0; k < count; ++k) list(mesh.rings.slot(v, k));
+  };
+  if (mesh.marks != nullptr) {
+    for_set_bytes(mesh.marks, mesh.slots, with_neighbors);
+    sort_vertices(mesh.slots);
+    return;
   }
-  std::sort(vertices_.begin(), vertices_.end());
+  for (uint32_t v = 0; v < mesh.slots; ++v) {
+    if (mesh.rings.valence[v] != 0) list(v);
+  }
+}
+
+// Ascending: of many it is faster to go through all ids.
+void MeetingSearch::sort_vertices(uint32_t slots) {
+  constexpr size_t kFew = 128;
+  if (vertices_.size() < slots / kFew) {
+    std::sort(vertices_.begin(), vertices_.end());
+    return;
+  }
+  vertices_.clear();
+  for_set_bytes(listed_.data(), slots, [&](uint32_t v) { vertices_.push_back(v); });
 }
 
 void MeetingSearch::list_faces(const Mesh& mesh, const Executor& executor) {
@@ -89,7 +112,10 @@ void MeetingSearch::list_faces(const Mesh& mesh, const Executor& executor) {
     n = total;
     total += here;
   }
-  faces_.resize_uninitialized(3 * static_cast<size_t>(total));
+  face_count_ = total;
+  // Whole leaves: kernels read the ids of all lanes.
+  faces_.resize_uninitialized(3 * block_count(total, kLanes) * kLanes);
+  std::fill(faces_.begin() + 3 * static_cast<std::ptrdiff_t>(total), faces_.end(), 0U);
   begin_.resize_uninitialized(count + 1);
   begin_[count] = total;
   run_blocks(executor, count, kVertexBlock, [&](size_t block, size_t begin, size_t end) {
@@ -110,10 +136,11 @@ void MeetingSearch::build_leaves(const Mesh& mesh, const Executor& executor) {
   const size_t count = block_count(face_count(), kLanes);
   level.boxes.resize_uninitialized(count);
   level.marked.resize_uninitialized(count);
+  level.moved.resize_uninitialized(count);
   run_blocks(executor, count, kNodeBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t leaf = begin; leaf < end; ++leaf) {
       BoxLanes& boxes = level.boxes[leaf];
-      uint32_t marked = 0;
+      uint32_t marked = 0, moved = 0;
       const auto used =
           static_cast<uint32_t>(std::min<size_t>(kLanes, face_count() - leaf * kLanes));
       for (uint32_t k = 0; k < used; ++k) {
@@ -121,12 +148,15 @@ void MeetingSearch::build_leaves(const Mesh& mesh, const Executor& executor) {
         const FaceBox box = face_box(mesh.positions, abc);
         boxes.set(k,
                   {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}});
-        marked |= static_cast<uint32_t>(mesh.marked(abc)) << k;
+        if (!mesh.marked(abc)) continue;
+        marked |= 1U << k;
+        moved |= static_cast<uint32_t>(mesh.moved(abc)) << k;
       }
       for (uint32_t k = used; k < kLanes; ++k) {
         boxes.set(k, {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
       }
       level.marked[leaf] = static_cast<uint8_t>(marked);
+      level.moved[leaf] = static_cast<uint8_t>(moved);
     }
   });
 }
@@ -139,9 +169,10 @@ void MeetingSearch::build_level(size_t index, const Executor& executor) {
   const size_t children = below.boxes.size(), count = block_count(children, kLanes);
   level.boxes.resize_uninitialized(count);
   level.marked.resize_uninitialized(count);
+  level.moved.resize_uninitialized(count);
   run_blocks(executor, count, kNodeBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t node = begin; node < end; ++node) {
-      uint32_t marked = 0;
+      uint32_t marked = 0, moved = 0;
       for (uint32_t k = 0; k < kLanes; ++k) {
         const size_t child = node * kLanes + k;
         const bool used = child < children;
@@ -149,8 +180,10 @@ void MeetingSearch::build_level(size_t index, const Executor& executor) {
                                       : Box3{{kInfinity, kInfinity, kInfinity},
                                              {-kInfinity, -kInfinity, -kInfinity}});
         marked |= static_cast<uint32_t>(used && below.marked[child] != 0) << k;
+        moved |= static_cast<uint32_t>(used && below.moved[child] != 0) << k;
       }
       level.marked[node] = static_cast<uint8_t>(marked);
+      level.moved[node] = static_cast<uint8_t>(moved);
     }
   });
 }
@@ -175,20 +208,23 @@ uint32_t MeetingSearch::index_of(uint32_t a, uint32_t b, uint32_t c) const {
 void MeetingSearch::search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) const {
   const uint32_t count = mesh.rings.valence[v];
   if (count == 0) return;
-  bool marked = mesh.marked(v);
-  for (uint32_t k = 0; k < count && !marked; ++k) marked = mesh.marked(mesh.rings.slot(v, k));
-  if (!marked || star_is_plain(mesh.rings, mesh.positions, v)) return;
+  bool marked = mesh.marked(v), moved = mesh.moved(v);
+  for (uint32_t k = 0; k < count && !(marked && moved); ++k) {
+    marked = marked || mesh.marked(mesh.rings.slot(v, k));
+    moved = moved || mesh.moved(mesh.rings.slot(v, k));
+  }
+  if (!marked || !moved || star_is_plain(mesh.rings, mesh.positions, v)) return;
   const auto corners = [&](uint32_t k) {
     return std::array<uint32_t, 3>{v, mesh.rings.slot(v, k),
                                    mesh.rings.slot(v, k + 1 == count ? 0 : k + 1)};
   };
   for (uint32_t i = 0; i < count; ++i) {
     const auto f = corners(i);
-    const bool f_marked = mesh.marked(f.data());
+    const bool f_marked = mesh.marked(f.data()), f_moved = mesh.moved(f.data());
     const Triangle t = make_triangle(mesh.positions, f.data());
     for (uint32_t j = i + 1; j < count; ++j) {
       const auto g = corners(j);
-      if ((f_marked || mesh.marked(g.data())) &&
+      if ((f_marked || mesh.marked(g.data())) && (f_moved || mesh.moved(g.data())) &&
           triangles_intersect(t, make_triangle(mesh.positions, g.data()))) {
         const uint32_t a = index_of(f[0], f[1], f[2]), b = index_of(g[0], g[1], g[2]);
         pairs.emplace_back(std::min(a, b), std::max(a, b));
@@ -197,58 +233,33 @@ void MeetingSearch::search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) cons
   }
 }
 
-// Marked faces of one leaf with those of a later one, or the same, that have no common vertex.
-void MeetingSearch::search_leaves(const Mesh& mesh, uint32_t leaf, const Box3& other_box,
-                                  uint32_t other, Pairs& pairs) const {
-  const Level& level = levels_[0];
-  uint32_t near = level.boxes[leaf].overlapping(other_box) & level.marked[leaf];
-  for (; near != 0; near &= near - 1) {
-    const uint32_t k = lowest_bit(near);
-    uint32_t hits = level.boxes[other].overlapping(level.boxes[leaf].at(k));
-    hits &= level.marked[other];
-    if (other == leaf) hits &= ~((2U << k) - 1);
-    const uint32_t* f = face(leaf * kLanes + k);
-    for (; hits != 0; hits &= hits - 1) {
-      const uint32_t* g = face(other * kLanes + lowest_bit(hits));
-      bool common = false;
-      for (int i = 0; i < 3; ++i) common |= (f[i] == g[0]) | (f[i] == g[1]) | (f[i] == g[2]);
-      if (common) continue;
-      if (triangles_intersect(make_triangle(mesh.positions, f), make_triangle(mesh.positions, g))) {
-        const auto a = static_cast<uint32_t>((f - faces_.data()) / 3);
-        const auto b = static_cast<uint32_t>((g - faces_.data()) / 3);
-        pairs.emplace_back(std::min(a, b), std::max(a, b));
-      }
-    }
+// The nodes of leaves from this one on whose boxes overlap its own.
+void MeetingSearch::find_near(uint32_t node, Vector<uint32_t>& near) const {
+  near.clear();
+  if (level_count_ == 2) {
+    near.push_back(node);
+    return;
   }
-}
-
-void MeetingSearch::search_leaf(const Mesh& mesh, uint32_t leaf, Pairs& pairs) const {
-  if (levels_[0].marked[leaf] == 0) return;
-  const Box3 box = all_lanes(levels_[0].boxes[leaf]);
+  const Box3 box = levels_[2].boxes[node / kLanes].at(node % kLanes);
+  const bool moved = levels_[1].moved[node] != 0;
   struct Visit {
     uint32_t level, node;
   };
   std::array<Visit, 16 * kLanes> stack;  // at most 7 of each level wait
   uint32_t depth = 0;
-  const auto top = static_cast<uint32_t>(level_count_ - 1);
-  if (top == 0) {
-    search_leaves(mesh, leaf, box, 0, pairs);
-    return;
-  }
-  stack[depth++] = {top, 0};
+  stack[depth++] = {static_cast<uint32_t>(level_count_ - 1), 0};
   while (depth != 0) {
     const Visit at = stack[--depth];
     const Level& level = levels_[at.level];
-    const BoxLanes& boxes = level.boxes[at.node];
-    uint32_t hits = boxes.overlapping(box) & level.marked[at.node];
-    // Children that lie before this leaf have found it themselves.
-    const uint32_t own = leaf >> (3 * (at.level - 1));  // the child of this level that holds it
+    uint32_t hits = level.boxes[at.node].overlapping(box) & level.wanted(moved, at.node);
+    // Children that lie before this node have found it themselves.
+    const uint32_t own = node >> (3 * (at.level - 2));  // the child of this level that holds it
     if (own >= (at.node + 1) * kLanes) continue;
     if (own >= at.node * kLanes) hits &= ~((1U << (own - at.node * kLanes)) - 1);
     for (; hits != 0; hits &= hits - 1) {
-      const uint32_t k = lowest_bit(hits), child = at.node * kLanes + k;
-      if (at.level == 1) {
-        search_leaves(mesh, leaf, boxes.at(k), child, pairs);
+      const uint32_t child = at.node * kLanes + lowest_bit(hits);
+      if (at.level == 2) {
+        near.push_back(child);
       } else {
         stack[depth++] = {at.level - 1, child};
       }
@@ -256,33 +267,60 @@ void MeetingSearch::search_leaf(const Mesh& mesh, uint32_t leaf, Pairs& pairs) c
   }
 }
 
+// Marked faces of the leaves of one node with those of later leaves, or the same, that have no
+// common vertex.
+void MeetingSearch::search_leaves(const Mesh& mesh, uint32_t node, Scratch& scratch,
+                                  Pairs& pairs) const {
+  const Level &leaves = levels_[0], &nodes = levels_[1];
+  if (nodes.marked[node] == 0) return;
+  find_near(node, scratch.near);
+  const size_t room = scratch.near.size() * kernels::kMostPairs;
+  if (scratch.candidates.size() < room) scratch.candidates.resize_uninitialized(room);
+  const kernels::FaceBoxes tree{faces_.data(),       leaves.boxes.data(), leaves.marked.data(),
+                                leaves.moved.data(), nodes.boxes.data(),  nodes.marked.data(),
+                                nodes.moved.data()};
+  for (uint32_t marked = nodes.marked[node]; marked != 0; marked &= marked - 1) {
+    const size_t count =
+        kernels::face_pairs(simd_, tree, node * kLanes + lowest_bit(marked), scratch.near.data(),
+                            scratch.near.size(), scratch.candidates.data());
+    for (size_t i = 0; i < count; ++i) {
+      const auto [f, g] = scratch.candidates[i];
+      if (triangles_intersect(make_triangle(mesh.positions, face(f)),
+                              make_triangle(mesh.positions, face(g)))) {
+        pairs.emplace_back(f, g);
+      }
+    }
+  }
+}
+
 const Vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t slots,
                                             const Packed* positions, const uint8_t* marked,
-                                            const Executor& executor) {
-  const Mesh mesh{rings, slots, positions, marked};
+                                            const Executor& executor, const Packed* before) {
+  const Mesh mesh{rings, slots, positions, marked, before};
   pairs_.clear();
-  faces_.clear();
   list_vertices(mesh);
   list_faces(mesh, executor);
   if (face_count() == 0) return pairs_;
   build_leaves(mesh, executor);
-  while (levels_[level_count_ - 1].boxes.size() > 1) build_level(level_count_, executor);
-  const size_t leaves = levels_[0].boxes.size();
-  const size_t vertex_tasks = block_count(vertices_.size(), kVertexBlock);
-  const size_t tasks = vertex_tasks + block_count(leaves, kNodeBlock);
+  do build_level(level_count_, executor);
+  while (levels_[level_count_ - 1].boxes.size() > 1);
+  const size_t nodes = levels_[1].boxes.size();
+  const size_t vertex_tasks = block_count(vertices_.size(), kStarBlock);
+  const size_t tasks = vertex_tasks + block_count(nodes, kSearchBlock);
   found_.resize(std::max(found_.size(), tasks));
   executor.run(tasks, [&](size_t task) {
     Pairs& pairs = found_[task];
     pairs.clear();
     if (task < vertex_tasks) {
-      const size_t begin = task * kVertexBlock;
-      for (size_t i = begin; i < std::min(vertices_.size(), begin + kVertexBlock); ++i) {
+      const size_t begin = task * kStarBlock;
+      for (size_t i = begin; i < std::min(vertices_.size(), begin + kStarBlock); ++i) {
         search_star(mesh, vertices_[i], pairs);
       }
     } else {
-      const size_t begin = (task - vertex_tasks) * kNodeBlock;
-      for (size_t leaf = begin; leaf < std::min(leaves, begin + kNodeBlock); ++leaf) {
-        search_leaf(mesh, static_cast<uint32_t>(leaf), pairs);
+      Scratch scratch;
+      const size_t begin = (task - vertex_tasks) * kSearchBlock;
+      for (size_t node = begin; node < std::min(nodes, begin + kSearchBlock); ++node) {
+        search_leaves(mesh, static_cast<uint32_t>(node), scratch, pairs);
       }
     }
   });

@@ -3,9 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/box_lanes.h"
+#include "engine/four.h"
 #include "engine/self_intersection.h"
+#include "kernels/box_lanes.h"
+#include "kernels/face_pairs.h"
 #include "kernels/ring.h"
+#include "kernels/simd.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
@@ -24,39 +27,56 @@ namespace plc {
 //   begin     2                       per listed vertex: its first face
 //   boxes     27.4                    per node: boxes of 8 faces or nodes, lane by lane
 //   marked    0.15                    per node: in which of the 8 a face is marked
+//   moved     0.15                    per node: in which of the 8 a marked face has moved
 //
 // and a byte per vertex that tells the listed ones. Buffers are kept from call to call. Not
 // thread-safe: one search at a time.
 class MeetingSearch {
  public:
+  explicit MeetingSearch(SimdTarget simd = best_simd_target()) : simd_(simd) {}
+
   // rings and positions of ids below `slots`; deleted vertices (valence 0) are skipped. marked: per
-  // id, not 0 where the vertex may have part in a meeting; NULL: all may. Returns the pairs (f, g),
-  // f < g, of faces that meet elsewhere than in what they share (triangle_intersection.h: exact,
-  // faces of zero area left out) and both have a marked vertex - one of them, where they share a
-  // vertex -, sorted, until the next call. The same for any executor. The mesh is closed and a
-  // manifold.
+  // id, not 0 where the vertex may have part in a meeting; NULL: all may. before: where the
+  // vertices were when no two faces met; NULL: all have moved. Returns the pairs (f, g), f < g, of
+  // faces that meet elsewhere than in what they share (triangle_intersection.h: exact, faces of
+  // zero area left out), both have a marked vertex - one of them, where they share a vertex -, and
+  // one has a vertex that has moved; sorted, until the next call. The same for any executor. The
+  // mesh is closed and a manifold.
   const Vector<FacePair>& find(const RingView& rings, uint32_t slots, const Packed* positions,
-                               const uint8_t* marked, const Executor& executor);
+                               const uint8_t* marked, const Executor& executor,
+                               const Packed* before = nullptr);
 
   // The faces of the last call; none where nothing was marked.
-  size_t face_count() const { return faces_.size() / 3; }
+  size_t face_count() const { return face_count_; }
   const uint32_t* face(uint32_t f) const { return faces_.data() + 3 * static_cast<size_t>(f); }
 
  private:
   static constexpr uint32_t kLanes = BoxLanes::kLanes;
-  // Level 0: nodes of faces; level k: nodes of nodes of level k - 1.
+  // Level 0: leaves, nodes of faces; level k: nodes of nodes of level k - 1. Two levels at least.
   struct Level {
     Buffer<BoxLanes> boxes;
-    Buffer<uint8_t> marked;  // a bit per child: some face in it is
+    // A bit per child: some face in it is marked; some marked face in it has moved.
+    Buffer<uint8_t> marked, moved;
+    // Of a node: what a face that has moved, or has not, is to be tested against.
+    uint32_t wanted(bool has_moved, size_t node) const {
+      return has_moved ? marked[node] : moved[node];
+    }
   };
   struct Mesh {
     RingView rings;
     uint32_t slots;
     const Packed* positions;
     const uint8_t* marks;
+    const Packed* before;
     bool marked(uint32_t v) const { return marks == nullptr || marks[v] != 0; }
     bool marked(const uint32_t* abc) const {
       return marked(abc[0]) || marked(abc[1]) || marked(abc[2]);
+    }
+    bool moved(uint32_t v) const {
+      return before == nullptr || !same_four(load_four(positions[v]), load_four(before[v]));
+    }
+    bool moved(const uint32_t* abc) const {
+      return moved(abc[0]) || moved(abc[1]) || moved(abc[2]);
     }
   };
   using Pairs = Vector<FacePair>;
@@ -64,17 +84,23 @@ class MeetingSearch {
   static Box3 all_lanes(const BoxLanes& boxes);
 
   void list_vertices(const Mesh& mesh);
+  void sort_vertices(uint32_t slots);
   void list_faces(const Mesh& mesh, const Executor& executor);
   void build_leaves(const Mesh& mesh, const Executor& executor);
   void build_level(size_t level, const Executor& executor);
   void search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) const;
-  void search_leaf(const Mesh& mesh, uint32_t leaf, Pairs& pairs) const;
-  void search_leaves(const Mesh& mesh, uint32_t leaf, const Box3& box, uint32_t other,
-                     Pairs& pairs) const;
+  struct Scratch {
+    Vector<uint32_t> near;  // nodes of leaves
+    Buffer<kernels::CandidatePair> candidates;
+  };
+  void find_near(uint32_t node, Vector<uint32_t>& near) const;
+  void search_leaves(const Mesh& mesh, uint32_t node, Scratch& scratch, Pairs& pairs) const;
   uint32_t index_of(uint32_t a, uint32_t b, uint32_t c) const;
 
+  SimdTarget simd_;
   Buffer<uint32_t> vertices_;  // ascending
   Buffer<uint8_t> listed_;     // per vertex
+  size_t face_count_ = 0;
   Buffer<uint32_t> faces_;
   Buffer<uint32_t> begin_;  // per listed vertex, and one more
   Buffer<uint32_t> block_faces_;

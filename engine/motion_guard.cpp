@@ -34,7 +34,7 @@ int64_t MotionGuard::take_back(const Buffer<Packed>& before, SpatialHash& hash,
   for (int64_t now = 1; now != 0; taken_back += now) {
     now = 0;
     const auto& pairs = search_.find(mesh_.rings(), mesh_.slots(), mesh_.packed.data(),
-                                     mesh_.risk.data(), executor_);
+                                     mesh_.risk.data(), executor_, before.data());
     for (const auto& [f, g] : pairs) {
       now += put_back(search_.face(f), before, hash, back) +
              put_back(search_.face(g), before, hash, back);

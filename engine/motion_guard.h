@@ -18,7 +18,7 @@ namespace plc {
 class MotionGuard {
  public:
   MotionGuard(Mesh& mesh, const Executor& executor, SimdTarget simd)
-      : mesh_(mesh), executor_(executor), simd_(simd) {}
+      : mesh_(mesh), executor_(executor), simd_(simd), search_(simd) {}
 
   // blocks: of kRingLanes vertices, with all that have moved and all their neighbours. Finds where
   // the surface folds now, against the normals of the movement's start.

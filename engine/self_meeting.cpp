@@ -7,8 +7,9 @@
 
 namespace plc {
 
-Vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Executor& executor) {
-  MeetingSearch search;
+Vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Executor& executor,
+                                              SimdTarget simd) {
+  MeetingSearch search(simd);
   Vector<uint32_t> faces;
   for (const auto& [f, g] :
        search.find(mesh.rings(), mesh.slots(), mesh.packed.data(), nullptr, executor)) {

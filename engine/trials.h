@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/box_lanes.h"
+#include "kernels/box_lanes.h"
 #include "engine/candidate.h"
 #include "engine/embedding_guard.h"
 #include "pyramid/executor.h"

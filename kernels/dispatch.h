@@ -1,6 +1,7 @@
 // Which compiled target of a kernel a SimdTarget means. For the kernels' own .cpp files, after
 // hwy/foreach_target.h; nothing else includes it.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -34,12 +35,20 @@ inline int64_t simd_target_mask(SimdTarget simd) {
 }
 
 // Index of `simd` in the tables of HWY_EXPORT. The choice is local: Highway's own, which is a
-// global of the process, is left alone.
+// global of the process, is left alone. Looked up: some kernels take less time than finding it.
 inline size_t dispatch_index(SimdTarget simd) {
   if constexpr ((HWY_TARGETS & (HWY_TARGETS - 1)) == 0) return 0;
-  hwy::ChosenTarget chosen;
-  chosen.Update(simd_target_mask(simd));
-  return chosen.GetIndex();
+  static const auto indices = [] {
+    std::array<size_t, 4> index{};
+    for (const SimdTarget target :
+         {SimdTarget::kScalar, SimdTarget::kSse4, SimdTarget::kAvx2, SimdTarget::kAvx512}) {
+      hwy::ChosenTarget chosen;
+      chosen.Update(simd_target_mask(target));
+      index[static_cast<size_t>(target)] = chosen.GetIndex();
+    }
+    return index;
+  }();
+  return indices[static_cast<size_t>(simd)];
 }
 
 }  // namespace plc::kernels

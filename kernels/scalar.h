@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "kernels/blocks.h"
+#include "kernels/face_pairs.h"
 #include "kernels/guided_stage.h"
 #include "kernels/image.h"
 #include "kernels/integrate.h"
@@ -102,6 +103,10 @@ Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& f
 
 // nearby.h
 uint32_t near_or_turned(const NearbyView& view, const NearbyQuery& query, uint32_t* hits);
+
+// face_pairs.h
+size_t face_pairs(const FaceBoxes& tree, uint32_t leaf, const uint32_t* nodes, size_t count,
+                  CandidatePair* pairs);
 
 // voxels.h
 void normalize_voxels(VoxelType type, const void* voxels, size_t count, double low, double scale,

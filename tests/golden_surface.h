@@ -1,10 +1,14 @@
 // The kernels over vertices, each run once on random input: hashes of all that it writes.
 #pragma once
+#include <numeric>
+
+#include "kernels/face_pairs.h"
 #include "kernels/guided_stage.h"
 #include "kernels/integrate.h"
 #include "kernels/nearby.h"
 #include "kernels/ring_forces.h"
 #include "pyramid/memory.h"
+#include "tests/face_tree_samples.h"
 #include "tests/golden_hash.h"
 
 namespace golden {
@@ -207,6 +211,26 @@ inline uint64_t near_or_turned(SimdTarget simd) {
     const uint32_t count = kernels::near_or_turned(simd, view, query, hits.data());
     for (uint32_t i = 0; i < count; ++i) hash.add(hits[i]);
     hash.add(count);
+  }
+  return hash.value();
+}
+
+// ---- face_pairs.h
+
+inline uint64_t face_pairs(SimdTarget simd) {
+  const samples::FaceTreeSample tree(500, 3, 80, 50);
+  std::vector<uint32_t> nodes(tree.node_count());
+  std::iota(nodes.begin(), nodes.end(), 0U);
+  std::vector<kernels::CandidatePair> pairs(kernels::kMostPairs * nodes.size());
+  Fnv hash;
+  for (uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+    const size_t count =
+        kernels::face_pairs(simd, tree.view(), leaf, nodes.data(), nodes.size(), pairs.data());
+    for (size_t i = 0; i < count; ++i) {
+      hash.add(pairs[i].f);
+      hash.add(pairs[i].g);
+    }
+    hash.add(static_cast<uint32_t>(count));
   }
   return hash.value();
 }

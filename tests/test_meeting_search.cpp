@@ -181,3 +181,52 @@ TEST_CASE("deleted vertices and an empty mesh are no obstacle", "[meeting_search
   CHECK(!pairs.empty());
   CHECK(pairs == expected(search, r, plc::Vector<uint8_t>(r.slots(), 1)));
 }
+
+TEST_CASE("of pairs that meet those are found of which a face has moved", "[meeting_search]") {
+  plc::MeetingSearch search;
+  const auto soup = [](double amount) {
+    Soup m = shaken(samples::torus(60, 30, 2, 0.7), 5, amount);
+    m.append(samples::moved(samples::sphere(3), 1.9, 0.2, 0.1));
+    return m;
+  };
+  const samples::Rings r = samples::rings_of(soup(0.12));
+  for (const unsigned percent : {0U, 2U, 40U, 100U}) {
+    const auto marked = random_vertices(r.slots(), 3, 80);
+    const auto moved = random_vertices(r.slots(), 7, percent);
+    samples::Rings before = r;
+    for (uint32_t v = 0; v < r.slots(); ++v) {
+      if (moved[v] != 0) before.positions[v].z += 0.01F;
+    }
+    const auto pairs = search.find(r.view(), r.slots(), r.positions.data(), marked.data(),
+                                   plc::SerialExecutor(), before.positions.data());
+    auto wanted = expected(search, r, marked);
+    const size_t meeting = wanted.size();
+    const auto has_moved = [&](uint32_t f) {
+      const uint32_t* abc = search.face(f);
+      return moved[abc[0]] != 0 || moved[abc[1]] != 0 || moved[abc[2]] != 0;
+    };
+    wanted.erase(std::remove_if(wanted.begin(), wanted.end(),
+                                [&](const FacePair& pair) {
+                                  return !has_moved(pair.first) && !has_moved(pair.second);
+                                }),
+                 wanted.end());
+    CHECK(pairs == wanted);
+    if (percent == 0) CHECK(wanted.empty());
+    if (percent == 2) CHECK(wanted.size() < meeting / 2);
+    if (percent == 40) CHECK(wanted.size() > 10);
+    if (percent == 100) CHECK(wanted.size() == meeting);
+  }
+}
+
+TEST_CASE("every SIMD target finds the same pairs", "[meeting_search]") {
+  const samples::Rings r = samples::rings_of(shaken(samples::torus(90, 40, 2, 0.7), 9, 0.09));
+  plc::MeetingSearch scalar(plc::SimdTarget::kScalar);
+  const auto twin =
+      scalar.find(r.view(), r.slots(), r.positions.data(), nullptr, plc::SerialExecutor());
+  CHECK(twin.size() > 100);
+  for (const plc::SimdTarget simd : plc::available_simd_targets()) {
+    plc::MeetingSearch search(simd);
+    CHECK(search.find(r.view(), r.slots(), r.positions.data(), nullptr, plc::SerialExecutor()) ==
+          twin);
+  }
+}
