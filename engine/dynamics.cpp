@@ -59,11 +59,15 @@ Dynamics::Dynamics(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const 
       time_step_(stable_time_step(model)) {}
 
 void Dynamics::resize(const Guide& guide) {
-  const size_t n = mesh_.padded();
-  for (Streams3* s : {&speed_, &rate_}) s->resize(n);
+  const size_t n = mesh_.padded(), room = mesh_.room();
+  for (Streams3* s : {&speed_, &rate_}) s->resize(n, room);
+  laplacian_.reserve(room);
   laplacian_.resize(n);
-  // As many as the mesh has room for: they are swapped.
-  for (Buffer<Packed>& b : stage_) b.resize(mesh_.packed.size());
+  // As many as the mesh has: they are swapped.
+  for (Buffer<Packed>& b : stage_) {
+    b.reserve(room);
+    b.resize(mesh_.packed.size());
+  }
   if (!only_surface_forces(guide)) force_.resize(n);
   if (!stretched(guide.metric)) return;
   for (Streams3* s : {&metric_normal_, &metric_step_}) s->resize(n);

@@ -18,19 +18,30 @@ uint32_t tail_class(uint32_t length) {
   return static_cast<uint32_t>(std::countr_zero(std::bit_ceil(std::max(length, 16U)))) - 4;
 }
 
+// What a renumbered mesh has room for: ids are given anew when a sixteenth of them has been
+// created (recovery.cpp), many of them anew in place of deleted ones. Beyond it streams are copied
+// to half as much again.
+size_t with_room(size_t padded) {
+  return padded + padded / (2 * kRingLanes) / kRingLanes * kRingLanes;
+}
+
+// target: new, of `padded` elements: those of `source`, in this order, then zeros.
 template <typename T>
-void permute(Buffer<T>& buffer, const Vector<uint32_t>& order) {
-  Buffer<T> moved(buffer.size());
-  for (size_t i = 0; i < order.size(); ++i) moved[i] = buffer[order[i]];
-  buffer.swap(moved);
+void permute(const Buffer<T>& source, const Vector<uint32_t>& order, size_t padded,
+             Buffer<T>& target) {
+  target.reserve(with_room(padded));
+  target.resize_uninitialized(order.size());
+  for (size_t i = 0; i < order.size(); ++i) target[i] = source[order[i]];
+  target.resize(padded);
 }
 
 }  // namespace
 
-void Streams3::resize(size_t n) {
-  x.resize(n);
-  y.resize(n);
-  z.resize(n);
+void Streams3::resize(size_t n, size_t room) {
+  for (Buffer<float>* stream : {&x, &y, &z}) {
+    stream->reserve(room);
+    stream->resize(n);
+  }
 }
 
 uint32_t Mesh::padded() const {
@@ -68,18 +79,33 @@ uint32_t Mesh::create(Vec3 p, Vec3 speed) {
   } else {
     grow(slots_ + 1);
   }
+  start_vertex(v);
   place(v, p);
   velocity.set(v, speed);
-  normal.set(v, {});
-  displacement.set(v, {});
-  path[v] = 0;
-  stir[v] = 0;
-  risk[v] = kNearRisk;
-  operations[v] = 0;
-  cut_id[v] = 0;
-  cut_iteration[v] = 0;
-  wake(v);
   return v;
+}
+
+// Everything but its ring.
+void Mesh::start_vertex(uint32_t v) {
+  visit_streams(*this, [v](auto& stream) { stream[v] = {}; });
+  risk[v] = kNearRisk;
+  wake(v);
+}
+
+uint32_t Mesh::create_many(uint32_t count, uint32_t valence, const Executor& executor) {
+  constexpr size_t kBlock = 4096;
+  const uint32_t first = slots_;
+  grow(slots_ + count);
+  run_blocks(executor, count, kBlock, [&](size_t, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const auto v = static_cast<uint32_t>(first + i);
+      start_vertex(v);
+      valence_[v] = static_cast<uint16_t>(valence);
+    }
+  });
+  created_ += count;
+  alive_ += count;
+  return first;
 }
 
 void Mesh::destroy(uint32_t v) {
@@ -106,6 +132,10 @@ void Mesh::set_valence(uint32_t v, uint32_t d) {
 
 void Mesh::set_ring(uint32_t v, const Neighbors& ring) {
   set_valence(v, ring.size());
+  exchange_ring(v, ring);
+}
+
+void Mesh::exchange_ring(uint32_t v, const Neighbors& ring) {
   const uint32_t* from = ring.data();
   const uint32_t inline_count = std::min(ring.size(), kRingSlots);
   for (uint32_t k = 0; k < inline_count; ++k) column(v, k) = from[k];
@@ -164,18 +194,7 @@ void Mesh::grow(uint32_t slots) {
   const size_t n = padded();
   if (n <= valence_.size()) return;
   const size_t old = valence_.size();
-  velocity.resize(n);
-  normal.resize(n);
-  displacement.resize(n);
-  packed.resize(n);
-  path.resize(n);
-  idle.resize(n);
-  calm.resize(n);
-  stir.resize(n);
-  risk.resize(n);
-  operations.resize(n);
-  cut_id.resize(n);
-  cut_iteration.resize(n);
+  visit_streams(*this, [n](auto& stream) { stream.resize(n); });
   columns_.resize(n * kRingColumns);
   valence_.resize(n);
   refresh_view();
@@ -206,55 +225,43 @@ void Mesh::free_tail(uint32_t offset, uint32_t length) {
 void Mesh::renumber(const Vector<uint32_t>& order, const Executor& executor) {
   Mesh to;
   to.delta = delta;
-  to.grow(static_cast<uint32_t>(order.size()));
+  to.slots_ = to.alive_ = static_cast<uint32_t>(order.size());
   carry_rings(order, to, executor);
-  const size_t n = to.valence_.size();
   std::vector<std::function<void()>> streams;
-  const auto carry = [&](auto& target, auto& source) {
-    streams.emplace_back([&target, &source, &order, n] {
-      permute(source, order);
-      source.resize(n);
-      target.swap(source);
+  visit_streams(to, *this, [&](auto& target, auto& source) {
+    streams.emplace_back([&] {
+      permute(source, order, to.padded(), target);
+      source = {};
     });
-  };
-  carry(to.packed, packed);
-  carry(to.path, path);
-  carry(to.idle, idle);
-  carry(to.calm, calm);
-  carry(to.stir, stir);
-  carry(to.risk, risk);
-  carry(to.operations, operations);
-  carry(to.cut_id, cut_id);
-  carry(to.cut_iteration, cut_iteration);
-  for (const auto& [target, source] :
-       {std::pair{&to.velocity, &velocity}, std::pair{&to.normal, &normal},
-        std::pair{&to.displacement, &displacement}}) {
-    carry(target->x, source->x);
-    carry(target->y, source->y);
-    carry(target->z, source->z);
-  }
+  });
   executor.run(streams.size(), [&](size_t stream) { streams[stream](); });
   *this = std::move(to);
   refresh_view();
 }
 
-// `to` is new and has a slot for each vertex of `order`.
+// `to` is new.
 void Mesh::carry_rings(const Vector<uint32_t>& order, Mesh& to, const Executor& executor) const {
   constexpr size_t kBlock = 4096;
   Vector<uint32_t> new_id(slots_);
   run_blocks(executor, order.size(), kBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) new_id[order[i]] = static_cast<uint32_t>(i);
   });
-  run_blocks(executor, order.size(), kBlock, [&](size_t, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const uint32_t d = valence_[order[i]];
-      if (d > kRingSlots) continue;
-      const auto v = static_cast<uint32_t>(i);
+  const size_t padded = to.padded();
+  to.valence_.reserve(with_room(padded));
+  to.valence_.resize_uninitialized(padded);
+  to.columns_.reserve(with_room(padded) * kRingColumns);
+  to.columns_.resize_uninitialized(padded * kRingColumns);
+  to.refresh_view();
+  run_blocks(executor, padded, kBlock, [&](size_t, size_t begin, size_t end) {
+    for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
+      const uint32_t known = v < order.size() ? valence_[order[v]] : 0;
+      const uint32_t d = known <= kRingSlots ? known : 0;
       to.valence_[v] = static_cast<uint16_t>(d);
-      for (uint32_t k = 0; k < d; ++k) to.column(v, k) = new_id[neighbor(order[i], k)];
+      for (uint32_t k = 0; k < d; ++k) to.column(v, k) = new_id[neighbor(order[v], k)];
+      for (uint32_t k = d; k < kRingSlots; ++k) to.column(v, k) = v;
+      to.column(v, kRingSlots) = 0;
     }
   });
-  to.alive_ = static_cast<uint32_t>(order.size());
   // Tails share an arena.
   for (uint32_t i = 0; i < order.size(); ++i) {
     if (valence_[order[i]] <= kRingSlots) continue;
@@ -287,10 +294,9 @@ Mesh Mesh::copy() const {
 
 uint64_t Mesh::bytes() const {
   const auto of = [](const auto& b) { return b.capacity() * sizeof(b[0]); };
-  const auto of3 = [&](const Streams3& s) { return of(s.x) + of(s.y) + of(s.z); };
-  return of3(velocity) + of3(normal) + of3(displacement) + of(packed) + of(path) + of(idle) +
-         of(calm) + of(stir) + of(risk) + of(operations) + of(cut_id) + of(cut_iteration) +
-         of(columns_) + of(valence_) + of(tail_);
+  uint64_t sum = of(columns_) + of(valence_) + of(tail_);
+  visit_streams(*this, [&](const auto& stream) { sum += of(stream); });
+  return sum;
 }
 
 }  // namespace plc

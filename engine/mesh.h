@@ -18,7 +18,8 @@ class StateWriter;
 // Three float streams of one vector quantity, 12 bytes per vertex.
 struct Streams3 {
   Buffer<float> x, y, z;
-  void resize(size_t n);
+  // room: for so many, from now on.
+  void resize(size_t n, size_t room = 0);
   Vec3 at(uint32_t v) const { return {x[v], y[v], z[v]}; }
   void set(uint32_t v, Vec3 a) { x[v] = a.x, y[v] = a.y, z[v] = a.z; }
 };
@@ -67,6 +68,8 @@ class Mesh {
   uint32_t slots() const { return slots_; }         // ids are below this
   uint32_t padded() const;                          // slots, up to whole blocks
   uint32_t vertex_count() const { return alive_; }  // not deleted
+  // Slots there is memory for: more are had by copying all streams.
+  size_t room() const { return valence_.capacity(); }
   bool alive(uint32_t v) const { return valence_[v] != 0; }
   uint32_t valence(uint32_t v) const { return valence_[v]; }
   uint32_t neighbor(uint32_t v, uint32_t k) const { return view_.slot(v, k); }
@@ -79,8 +82,14 @@ class Mesh {
   // Takes an id from the free list (last freed first) or a new one; its ring is still empty, it
   // counts as alive from set_ring on, and it is due for a check.
   uint32_t create(Vec3 p, Vec3 velocity);
+  // New ids that follow one another, at the origin, at rest and due for a check. They are alive at
+  // once: each gets its ring, of this valence, by exchange_ring(). 3 <= valence <= kRingSlots. Only
+  // where no vertex has been deleted.
+  uint32_t create_many(uint32_t count, uint32_t valence, const Executor& executor);
   void destroy(uint32_t v);
   void set_ring(uint32_t v, const Neighbors& ring);
+  // As many neighbours as v has. Distinct vertices may be written concurrently.
+  void exchange_ring(uint32_t v, const Neighbors& ring);
   // Edits of one ring that the transformations are made of.
   void replace(uint32_t v, uint32_t old_neighbor, uint32_t new_neighbor);
   void replace(uint32_t v, uint32_t old_neighbor, uint32_t first, uint32_t second);
@@ -120,8 +129,14 @@ class Mesh {
 
  private:
   Mesh(const Mesh&) = default;
+  // visit(stream of a, stream of b) for every stream of the vertices but the rings.
+  template <typename A, typename B, typename Visit>
+  static void visit_streams(A& a, B& b, const Visit& visit);
   template <typename Self, typename Visit>
-  static void visit_streams(Self& mesh, const Visit& visit);
+  static void visit_streams(Self& mesh, const Visit& visit) {
+    visit_streams(mesh, mesh, [&](auto& stream, auto&) { visit(stream); });
+  }
+  void start_vertex(uint32_t v);
   bool restore_rings(StateReader& from);
   void grow(uint32_t slots);
   void carry_rings(const Vector<uint32_t>& order, Mesh& to, const Executor& executor) const;
@@ -143,5 +158,26 @@ class Mesh {
   Vector<uint32_t> free_;
   RingView view_;
 };
+
+template <typename A, typename B, typename Visit>
+void Mesh::visit_streams(A& a, B& b, const Visit& visit) {
+  const auto visit3 = [&](auto& s, auto& t) {
+    visit(s.x, t.x);
+    visit(s.y, t.y);
+    visit(s.z, t.z);
+  };
+  visit3(a.velocity, b.velocity);
+  visit3(a.normal, b.normal);
+  visit3(a.displacement, b.displacement);
+  visit(a.packed, b.packed);
+  visit(a.path, b.path);
+  visit(a.idle, b.idle);
+  visit(a.calm, b.calm);
+  visit(a.stir, b.stir);
+  visit(a.risk, b.risk);
+  visit(a.operations, b.operations);
+  visit(a.cut_id, b.cut_id);
+  visit(a.cut_iteration, b.cut_iteration);
+}
 
 }  // namespace plc

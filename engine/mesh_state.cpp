@@ -31,21 +31,6 @@ bool within_reach(const Buffer<Packed>& b) {
 
 }  // namespace
 
-// visit(stream) for every stream of the vertices but the rings.
-template <typename Self, typename Visit>
-void Mesh::visit_streams(Self& mesh, const Visit& visit) {
-  for (auto* s : {&mesh.velocity, &mesh.normal, &mesh.displacement}) {
-    visit(s->x);
-    visit(s->y);
-    visit(s->z);
-  }
-  visit(mesh.packed);
-  visit(mesh.path);
-  for (auto* b : {&mesh.idle, &mesh.calm, &mesh.stir, &mesh.risk, &mesh.operations}) visit(*b);
-  visit(mesh.cut_id);
-  visit(mesh.cut_iteration);
-}
-
 // Padding included: it may sleep or not. Rings without the places of their tails, which tell
 // nothing.
 void Mesh::save(StateWriter& to) const {

@@ -75,34 +75,60 @@ uint32_t vertex_of(const Mesh& mesh, const FaceVertices& faces, uint32_t u, uint
   return faces.of_slot[faces.first[u] + k];
 }
 
-FaceVertices create_face_vertices(Mesh& mesh, uint32_t old_slots) {
+constexpr size_t kVertices = 1024;  // per task
+
+// visit(k, a, b) for the faces (v, a, b) of v whose smallest vertex it is: a is slot k.
+template <typename Visit>
+void visit_own_faces(const Mesh& mesh, uint32_t v, const Visit& visit) {
+  const uint32_t d = mesh.valence(v);
+  for (uint32_t k = 0; k < d; ++k) {
+    const uint32_t a = mesh.neighbor(v, k);
+    const uint32_t b = mesh.neighbor(v, k + 1 == d ? 0 : k + 1);
+    if (a > v && b > v) visit(k, a, b);
+  }
+}
+
+// In the order of faces by their smallest vertex, then around it.
+FaceVertices create_face_vertices(Mesh& mesh, uint32_t old_slots, const Executor& executor) {
+  const size_t blocks = block_count(old_slots, kVertices);
+  Vector<uint32_t> block_first(blocks);  // its first vertex in a face
   FaceVertices faces;
   faces.first.resize(old_slots);
-  uint32_t total = 0;
-  for (uint32_t v = 0; v < old_slots; ++v) {
-    faces.first[v] = total;
-    total += mesh.valence(v);
-  }
-  faces.of_slot.resize(total);
-  for (uint32_t v = 0; v < old_slots; ++v) {
-    const uint32_t d = mesh.valence(v);
-    for (uint32_t k = 0; k < d; ++k) {
-      const uint32_t a = mesh.neighbor(v, k);
-      const uint32_t b = mesh.neighbor(v, k + 1 == d ? 0 : k + 1);
-      if (a < v || b < v) continue;
-      const Vec3 centre = (mesh.at(v) + mesh.at(a) + mesh.at(b)) * (1.0F / 3.0F);
-      const Vec3 speed =
-          (mesh.velocity.at(v) + mesh.velocity.at(a) + mesh.velocity.at(b)) * (1.0F / 3.0F);
-      const uint32_t c = mesh.create(centre, speed);
-      faces.of_slot[faces.first[v] + k] = c;
-      const std::array<std::pair<uint32_t, uint32_t>, 2> others{{{a, b}, {b, v}}};
-      for (const auto& [x, y] : others) {
-        uint32_t j = 0;
-        while (mesh.neighbor(x, j) != y) ++j;
-        faces.of_slot[faces.first[x] + j] = c;
-      }
+  run_blocks(executor, old_slots, kVertices, [&](size_t block, size_t begin, size_t end) {
+    uint32_t count = 0;
+    for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
+      visit_own_faces(mesh, v, [&](uint32_t, uint32_t, uint32_t) { ++count; });
     }
+    block_first[block] = count;
+  });
+  uint32_t slots = 0, count = 0;
+  for (uint32_t v = 0; v < old_slots; ++v) {
+    faces.first[v] = slots;
+    slots += mesh.valence(v);
   }
+  for (uint32_t& first : block_first) count += std::exchange(first, count);
+  faces.of_slot.resize(slots);
+  const uint32_t first_created = mesh.create_many(count, 6, executor);
+  run_blocks(executor, old_slots, kVertices, [&](size_t block, size_t begin, size_t end) {
+    uint32_t c = first_created + block_first[block];
+    const auto set = [&](uint32_t x, uint32_t k) { faces.of_slot[faces.first[x] + k] = c; };
+    const auto slot_of = [&](uint32_t x, uint32_t y) {
+      uint32_t k = 0;
+      while (mesh.neighbor(x, k) != y) ++k;
+      return k;
+    };
+    for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
+      visit_own_faces(mesh, v, [&](uint32_t k, uint32_t a, uint32_t b) {
+        mesh.place(c, (mesh.at(v) + mesh.at(a) + mesh.at(b)) * (1.0F / 3.0F));
+        mesh.velocity.set(
+            c, (mesh.velocity.at(v) + mesh.velocity.at(a) + mesh.velocity.at(b)) * (1.0F / 3.0F));
+        set(v, k);
+        set(a, slot_of(a, b));
+        set(b, slot_of(b, v));
+        ++c;
+      });
+    }
+  });
   return faces;
 }
 
@@ -116,14 +142,9 @@ Vector<Corners> wrong_faces(const Mesh& mesh, const Executor& executor) {
   const auto point = [&](uint32_t v) { return Point3{mesh.at(v).x, mesh.at(v).y, mesh.at(v).z}; };
   run_blocks(executor, mesh.slots(), kBlock, [&](size_t block, size_t begin, size_t end) {
     for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
-      const uint32_t d = mesh.valence(v);
-      for (uint32_t k = 0; k < d; ++k) {
-        const uint32_t a = mesh.neighbor(v, k);
-        const uint32_t b = mesh.neighbor(v, k + 1 == d ? 0 : k + 1);
-        if (v < a && v < b && collinear(point(v), point(a), point(b))) {
-          flat[block].push_back({v, a, b});
-        }
-      }
+      visit_own_faces(mesh, v, [&](uint32_t, uint32_t a, uint32_t b) {
+        if (collinear(point(v), point(a), point(b))) flat[block].push_back({v, a, b});
+      });
     }
   });
   for (const auto& some : flat) wrong.insert(wrong.end(), some.begin(), some.end());
@@ -204,30 +225,30 @@ void refine(Mesh& mesh, const Executor& executor, bool renumbering) {
     mesh.renumber(renumbering ? morton_order(mesh, executor) : living_order(mesh), executor);
   const uint32_t old_slots = mesh.slots();
   mesh.reserve(old_slots * 3);
-  const FaceVertices faces = create_face_vertices(mesh, old_slots);
+  const FaceVertices faces = create_face_vertices(mesh, old_slots, executor);
   // The vertex of a face (v, a, b) gets its three corners and the vertices of the faces across the
   // edges; an old vertex gets the vertices of its faces.
-  for (uint32_t v = 0; v < old_slots; ++v) {
-    const uint32_t d = mesh.valence(v);
-    for (uint32_t k = 0; k < d; ++k) {
-      const uint32_t a = mesh.neighbor(v, k);
-      const uint32_t b = mesh.neighbor(v, k + 1 == d ? 0 : k + 1);
-      if (a < v || b < v) continue;
-      Neighbors ring;
-      // Across v-a lies the face (a, v, x): v follows a in it, seen from a.
-      for (const auto& [x, y] : {std::pair{v, a}, std::pair{a, b}, std::pair{b, v}}) {
-        ring.push_back(x);
-        ring.push_back(vertex_of(mesh, faces, y, x));
-      }
-      mesh.set_ring(faces.of_slot[faces.first[v] + k], ring);
+  run_blocks(executor, old_slots, kVertices, [&](size_t, size_t begin, size_t end) {
+    for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
+      visit_own_faces(mesh, v, [&](uint32_t k, uint32_t a, uint32_t b) {
+        Neighbors ring;
+        // Across v-a lies the face (a, v, x): v follows a in it, seen from a.
+        for (const auto& [x, y] : {std::pair{v, a}, std::pair{a, b}, std::pair{b, v}}) {
+          ring.push_back(x);
+          ring.push_back(vertex_of(mesh, faces, y, x));
+        }
+        mesh.exchange_ring(faces.of_slot[faces.first[v] + k], ring);
+      });
     }
-  }
-  for (uint32_t v = 0; v < old_slots; ++v) {
-    Neighbors ring;
-    for (uint32_t k = 0; k < mesh.valence(v); ++k)
-      ring.push_back(faces.of_slot[faces.first[v] + k]);
-    mesh.set_ring(v, ring);
-  }
+  });
+  run_blocks(executor, old_slots, kVertices, [&](size_t, size_t begin, size_t end) {
+    for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
+      Neighbors ring;
+      for (uint32_t k = 0; k < mesh.valence(v); ++k)
+        ring.push_back(faces.of_slot[faces.first[v] + k]);
+      mesh.exchange_ring(v, ring);
+    }
+  });
   mesh.delta /= kRefinement;
   // Searches for faces that meet are fast where ids follow space.
   const auto order = renumbering ? morton_order(mesh, executor) : living_order(mesh);
