@@ -55,6 +55,9 @@ inline constexpr float kHashCell = 4.0F;
 // are walked one by one: at 4 they were a quarter of what it takes to collect what is around a
 // vertex.
 inline constexpr uint32_t kHashInsertions = 32;
+// How far a vertex may be from where it was entered, in delta: what it moves between two checks,
+// and room for the rounding of each movement.
+inline constexpr float kHashSlack = 1.05F * kCheckPath;
 
 // ---- resolution (figure 9) ------------------------------------------------------------------
 

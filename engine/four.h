@@ -9,6 +9,8 @@ namespace plc {
 
 using Four = float __attribute__((vector_size(16)));
 
+using FourInts = int32_t __attribute__((vector_size(16)));
+
 inline Four load_four(const float* four) {
   Four f;
   std::memcpy(&f, four, sizeof f);
@@ -27,8 +29,14 @@ inline Four max_four(Four a, Four b) {
   return a < b ? b : a;
 }
 
+// Rounded down; within the range of int32_t.
+inline FourInts floor_four(Four f) {
+  const FourInts toward_zero = __builtin_convertvector(f, FourInts);
+  return toward_zero + (__builtin_convertvector(toward_zero, Four) > f);
+}
+
 // Whether no lane of a mask is set.
-inline bool no_lane(int32_t __attribute__((vector_size(16))) mask) {
+inline bool no_lane(FourInts mask) {
   uint64_t halves[2];
   std::memcpy(halves, &mask, sizeof halves);
   return (halves[0] | halves[1]) == 0;

@@ -55,6 +55,7 @@ Resolution::Resolution(Mesh& mesh, const Executor& executor, SimdTarget simd)
       executor_(executor),
       simd_(simd),
       due_(mesh, executor),
+      hash_(simd),
       surroundings_(mesh, executor, simd),
       trials_(mesh, hash_, executor) {}
 
@@ -116,7 +117,7 @@ const Vector<uint32_t>& Resolution::take_all() {
   // Every vertex has just been entered where it is.
   hash_.set_slack(0);
   surroundings_.search_near(due_.list(), hash_);
-  hash_.set_slack(kCheckPath * static_cast<float>(mesh_.delta));
+  hash_.set_slack(kHashSlack * static_cast<float>(mesh_.delta));
   return due_.list();
 }
 
@@ -138,7 +139,7 @@ void Resolution::update_hash(bool all) {
   const bool many = due_.list().size() + hash_.inserted() > mesh_.slots() / kHashInsertions;
   if (all || many || !hash_valid_) {
     const auto delta = static_cast<float>(mesh_.delta);
-    hash_.build(mesh_, kHashCell * delta, executor_, kCheckPath * delta);
+    hash_.build(mesh_, kHashCell * delta, executor_, kHashSlack * delta);
     hash_valid_ = true;
     return;
   }

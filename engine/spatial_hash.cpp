@@ -19,9 +19,10 @@ constexpr size_t kBlock = 4096;  // vertices per task
 }  // namespace
 
 void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, float slack) {
-  inverse_cell_ = 1.0F / cell;
+  inverse_quantum_ = static_cast<float>(1 << kQuantaShift) / cell;
   slack_ = slack;
   const uint32_t n = mesh.slots();
+  const Packed* const packed = mesh.packed.data();
   const uint32_t buckets = std::bit_ceil(std::max(n, 256U));
   const auto part_shift = static_cast<uint32_t>(std::countr_zero(buckets / kParts));
   mask_ = buckets - 1;
@@ -36,7 +37,7 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
     uint32_t count[kParts] = {};
     for (size_t i = begin; i < end; ++i) {
       const auto v = static_cast<uint32_t>(i);
-      if (mesh.alive(v)) ++count[bucket(mesh.at(v)) >> part_shift];
+      if (mesh.alive(v)) ++count[bucket(quanta(load_four(packed[v]))) >> part_shift];
     }
     std::copy(count, count + kParts, part_start_.data() + block * kParts);
   });
@@ -58,14 +59,19 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
     for (size_t i = begin; i < end; ++i) {
       const auto v = static_cast<uint32_t>(i);
       if (!mesh.alive(v)) continue;
-      const uint32_t b = bucket(mesh.at(v));
-      placed_[next[b >> part_shift]++] = {v, b};
+      const FourInts q = quanta(load_four(packed[v]));
+      const uint32_t b = bucket(q);
+      placed_[next[b >> part_shift]++] = {v, b, coarse_place(q[0], q[1], q[2])};
     }
   });
   // ... then each part by buckets.
   start_.resize_uninitialized(size_t{buckets} + 1);
   start_[buckets] = total;
-  entries_.resize_uninitialized(total);
+  // Kernels read whole vectors.
+  for (Buffer<uint32_t>* stream : {&entries_, &places_}) {
+    stream->resize_uninitialized(size_t{total} + kRingLanes);
+    std::fill(stream->end() - kRingLanes, stream->end(), 0U);
+  }
   executor.run(kParts, [&](size_t part) {
     uint32_t* const begin = start_.data() + (part << part_shift);
     uint32_t* const end = begin + (size_t{1} << part_shift);
@@ -76,15 +82,19 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
     uint32_t next = first[part + 1];
     for (uint32_t* s = end; s-- != begin;) *s = next -= *s;
     // Backwards from the ends would need them: the starts move up and are moved back.
-    for (const Placed* p = from; p != to; ++p) entries_[start_[p->bucket]++] = p->id;
+    for (const Placed* p = from; p != to; ++p) {
+      const uint32_t entry = start_[p->bucket]++;
+      entries_[entry] = p->id;
+      places_[entry] = p->place;
+    }
     for (uint32_t* s = end; --s != begin;) *s = s[-1];
     *begin = first[part];
   });
 }
 
 void SpatialHash::insert(uint32_t v, Vec3 p) {
-  const uint32_t b = bucket(p);
-  if (!has_entry(b, v)) enter(v, b);
+  const FourInts q = quanta(p);
+  if (!refresh(v, q)) enter(v, bucket(q));
 }
 
 void SpatialHash::insert(const Mesh& mesh, const Vector<uint32_t>& ids, const Executor& executor) {
@@ -94,11 +104,11 @@ void SpatialHash::insert(const Mesh& mesh, const Vector<uint32_t>& ids, const Ex
   run_blocks(executor, ids.size(), kTask, [&](size_t task, size_t begin, size_t end) {
     missing_[task].clear();
     for (size_t i = begin; i < end; ++i) {
-      if (!has_entry(bucket(mesh.at(ids[i])), ids[i])) missing_[task].push_back(ids[i]);
+      if (!refresh(ids[i], quanta(mesh.at(ids[i])))) missing_[task].push_back(ids[i]);
     }
   });
   for (size_t task = 0; task < tasks; ++task) {
-    for (const uint32_t v : missing_[task]) enter(v, bucket(mesh.at(v)));
+    for (const uint32_t v : missing_[task]) enter(v, bucket(quanta(mesh.at(v))));
   }
 }
 
@@ -108,9 +118,14 @@ void SpatialHash::enter(uint32_t v, uint32_t b) {
   late_head_[list] = static_cast<uint32_t>(late_.size() - 1);
 }
 
-bool SpatialHash::has_entry(uint32_t b, uint32_t v) const {
-  const uint32_t* const end = entries_.data() + start_[b + 1];
-  if (std::find(entries_.data() + start_[b], end, v) != end) return true;
+bool SpatialHash::refresh(uint32_t v, FourInts q) {
+  const uint32_t b = bucket(q);
+  uint32_t entry = start_[b];
+  while (entry != start_[b + 1] && entries_[entry] != v) ++entry;
+  if (entry != start_[b + 1]) {
+    places_[entry] = coarse_place(q[0], q[1], q[2]);
+    return true;
+  }
   uint32_t i = late_head_[b >> kLateShift];
   while (i != kEnd && late_[i].id != v) i = late_[i].next;
   return i != kEnd;
@@ -118,48 +133,54 @@ bool SpatialHash::has_entry(uint32_t b, uint32_t v) const {
 
 void SpatialHash::collect(const Mesh& mesh, Vec3 low, Vec3 high, Collected& out) const {
   // Each step asks for the memory of the next one for all rows before it reads any.
+  const Reach reached = reach(low, high);
   out.runs.clear();
-  visit_rows(low, high, [&](uint32_t first, uint32_t run) {
+  visit_rows(reached, [&](uint32_t first, uint32_t run) {
     visit_runs(first, run, [&](uint32_t b, uint32_t last) {
       __builtin_prefetch(&start_[b]);
       out.runs.push_back({b, last});
     });
   });
-  size_t count = 0;
+  uint32_t count = 0;
+  out.entries.clear();
   for (const Run& r : out.runs) {
-    __builtin_prefetch(&entries_[start_[r.first]]);
-    count += start_[r.last + 1] - start_[r.first];
+    const kernels::EntryRun run{start_[r.first], start_[r.last + 1]};
+    __builtin_prefetch(&entries_[run.first]);
+    __builtin_prefetch(&places_[run.first]);
+    count += run.last - run.first;
+    out.entries.push_back(run);
   }
+  out.found.resize_uninitialized(size_t{count} + kRingLanes);
+  count = kernels::entries_within(simd_, entries_.data(), places_.data(), out.entries.data(),
+                                  out.entries.size(), reached.box(), out.found.data());
   out.found.resize_uninitialized(count);
+  if (!late_.empty()) append_late(out);
   // Nothing that the loops write is among what they read: by pointers of their own.
   const Packed* const packed = mesh.packed.data();
-  uint32_t* found = out.found.data();
-  count = 0;
-  for (const Run& r : out.runs) {
-    const uint32_t* const end = entries_.data() + start_[r.last + 1];
-    for (const uint32_t* e = entries_.data() + start_[r.first]; e != end; ++e) {
-      __builtin_prefetch(packed + *e);
-      found[count++] = *e;
-    }
-    if (late_.empty()) continue;
-    for (uint32_t l = r.first >> kLateShift; l <= r.last >> kLateShift; ++l) {
-      for (uint32_t i = late_head_[l]; i != kEnd; i = late_[i].next) {
-        out.found.resize_uninitialized(out.found.size() + 1);
-        found = out.found.data();
-        found[count++] = late_[i].id;
-      }
-    }
-  }
+  const uint32_t* const found = out.found.data();
+  const uint32_t* const end = found + out.found.size();
+  for (const uint32_t* f = found; f != end; ++f) __builtin_prefetch(packed + *f);
   const Four from{low.x, low.y, low.z, 0}, to{high.x, high.y, high.z, 0};
   out.ids.resize_uninitialized(out.found.size());
   uint32_t* within = out.ids.data();
   // Without branches: whether a vertex lies within is as good as random.
-  for (const uint32_t* f = found; f != found + count; ++f) {
+  for (const uint32_t* f = found; f != end; ++f) {
     const Four at = load_four(packed[*f]);
     *within = *f;
     within += static_cast<size_t>(overlap_four(at, at, from, to));
   }
   out.ids.resize_uninitialized(static_cast<size_t>(within - out.ids.data()));
+}
+
+// What was inserted in the runs.
+void SpatialHash::append_late(Collected& out) const {
+  for (const Run& r : out.runs) {
+    for (uint32_t l = r.first >> kLateShift; l <= r.last >> kLateShift; ++l) {
+      for (uint32_t i = late_head_[l]; i != kEnd; i = late_[i].next) {
+        out.found.push_back(late_[i].id);
+      }
+    }
+  }
 }
 
 }  // namespace plc

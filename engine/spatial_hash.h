@@ -5,7 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/four.h"
 #include "engine/mesh.h"
+#include "kernels/hash_entries.h"
+#include "kernels/simd.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
@@ -19,19 +22,23 @@ namespace plc {
 //
 //   start    uint32 per bucket + 1     first entry of the bucket
 //   entries  uint32 per vertex         ids, by bucket, then in ascending order
+//   places   uint32 per vertex         where the vertex of the entry was, to 1/32 of a cell: most
+//                                      that lie outside of a box are told without looking them up
 //   late     8 bytes per insertion     what was inserted since: a list per 4 buckets
 //
-// While building another 8 bytes per vertex.
+// While building another 12 bytes per vertex.
 class SpatialHash {
  public:
-  // All living vertices of the mesh. cell > 0, mesh units. slack >= 0: how far a vertex may be, on
-  // each axis, from where it was when it was last entered: queries look that much farther. The same
-  // table for any executor.
+  explicit SpatialHash(SimdTarget simd = best_simd_target()) : simd_(simd) {}
+
+  // All living vertices of the mesh. cell > 0, mesh units; no vertex is 2^26 cells from the origin.
+  // slack >= 0: how far a vertex may be, on each axis, from where it was when it was last entered:
+  // queries look that much farther. The same table for any executor.
   void build(const Mesh& mesh, float cell, const Executor& executor, float slack = 0);
   // From now on a vertex may be this far from where it was when it was last entered.
   void set_slack(float slack) { slack_ = slack; }
-  // A vertex that was created since, or has moved by more than the slack. Where queries would find
-  // it in any case, nothing.
+  // A vertex that was created since, or has moved by more than the slack: to be called before it is
+  // asked for.
   void insert(uint32_t v, Vec3 p);
   // Several of them. No vertex is listed twice.
   void insert(const Mesh& mesh, const Vector<uint32_t>& ids, const Executor& executor);
@@ -47,6 +54,7 @@ class SpatialHash {
     Buffer<uint32_t> ids;
     Buffer<uint32_t> found;
     Buffer<Run> runs;
+    Buffer<kernels::EntryRun> entries;
   };
   void collect(const Mesh& mesh, Vec3 low, Vec3 high, Collected& out) const;
   // visit(id, position) for each living vertex within the box [low, high], perhaps twice; always in
@@ -60,35 +68,51 @@ class SpatialHash {
   struct Late {
     uint32_t id, next;
   };
-  int32_t cell_of(float x) const { return static_cast<int32_t>(std::floor(x * inverse_cell_)); }
+  static constexpr int32_t kQuantaShift = 5;  // quanta per cell, as a power of two
+  FourInts quanta(Four p) const { return floor_four(p * inverse_quantum_); }
+  FourInts quanta(Vec3 p) const { return quanta(Four{p.x, p.y, p.z, 0}); }
   uint32_t row(int32_t y, int32_t z) const {
     return static_cast<uint32_t>(y) * 73856093U ^ static_cast<uint32_t>(z) * 19349663U;
   }
-  // Whether queries of bucket b come across v.
-  bool has_entry(uint32_t b, uint32_t v) const;
+  // Whether queries of v's bucket come across it; they know it to be here then.
+  bool refresh(uint32_t v, FourInts quanta);
   void enter(uint32_t v, uint32_t b);
-  uint32_t bucket(Vec3 p) const {
-    return (static_cast<uint32_t>(cell_of(p.x)) + row(cell_of(p.y), cell_of(p.z))) & mask_;
+  void append_late(Collected& out) const;
+  uint32_t bucket(FourInts quanta) const {
+    const FourInts cell = quanta >> kQuantaShift;
+    return (static_cast<uint32_t>(cell[0]) + row(cell[1], cell[2])) & mask_;
   }
-  // visit(first bucket, number of buckets - 1) for each row of cells that the box may have entries
-  // in.
+  // What a query looks at.
+  struct Reach {
+    FourInts low, high;  // quanta
+    CoarseBox box() const { return coarse_box(&low[0], &high[0]); }
+  };
+  Reach reach(Vec3 low, Vec3 high) const {
+    const Four far = Four{} + slack_;
+    return {quanta(Four{low.x, low.y, low.z, 0} - far),
+            quanta(Four{high.x, high.y, high.z, 0} + far)};
+  }
+  // visit(first bucket, number of buckets - 1) for each row of cells.
   template <typename Visit>
-  void visit_rows(Vec3 low, Vec3 high, const Visit& visit) const;
+  void visit_rows(const Reach& reach, const Visit& visit) const;
   // visit(b, last) for the runs of buckets b .. last that make up `run + 1` buckets from `first`
   // on: two where the table's end lies between.
   template <typename Visit>
   void visit_runs(uint32_t first, uint32_t run, const Visit& visit) const;
 
-  float inverse_cell_ = 1;
+  SimdTarget simd_;
+  float inverse_quantum_ = 1;
   float slack_ = 0;
   uint32_t mask_ = 0;
   Buffer<uint32_t> start_;
   Buffer<uint32_t> entries_;
+  Buffer<CoarsePlace> places_;
   Buffer<uint32_t> late_head_;
   Buffer<Late> late_;
   // By part of the buckets, then by vertex: while building.
   struct Placed {
     uint32_t id, bucket;
+    CoarsePlace place;
   };
   Buffer<Placed> placed_;
   Buffer<uint32_t> part_start_;
@@ -114,9 +138,13 @@ void SpatialHash::visit_box(const Mesh& mesh, Vec3 low, Vec3 high, Visit&& visit
       visit(v, Vec3{p.x, p.y, p.z});
     }
   };
-  visit_rows(low, high, [&](uint32_t first, uint32_t run) {
+  const Reach reached = reach(low, high);
+  const CoarseBox box = reached.box();
+  visit_rows(reached, [&](uint32_t first, uint32_t run) {
     visit_runs(first, run, [&](uint32_t b, uint32_t last) {
-      for (uint32_t i = start_[b]; i < start_[last + 1]; ++i) look(entries_[i]);
+      for (uint32_t i = start_[b]; i < start_[last + 1]; ++i) {
+        if (may_be_within(places_[i], box)) look(entries_[i]);
+      }
       if (late_.empty()) return;
       for (uint32_t l = b >> kLateShift; l <= last >> kLateShift; ++l) {
         for (uint32_t i = late_head_[l]; i != kEnd; i = late_[i].next) look(late_[i].id);
@@ -126,15 +154,12 @@ void SpatialHash::visit_box(const Mesh& mesh, Vec3 low, Vec3 high, Visit&& visit
 }
 
 template <typename Visit>
-void SpatialHash::visit_rows(Vec3 low, Vec3 high, const Visit& visit) const {
-  const int32_t x0 = cell_of(low.x - slack_);
-  const uint32_t run = static_cast<uint32_t>(cell_of(high.x + slack_) - x0);
-  const int32_t y0 = cell_of(low.y - slack_);
-  const int32_t y1 = cell_of(high.y + slack_);
-  const int32_t z1 = cell_of(high.z + slack_);
-  for (int32_t z = cell_of(low.z - slack_); z <= z1; ++z) {
-    for (int32_t y = y0; y <= y1; ++y) {
-      visit((static_cast<uint32_t>(x0) + row(y, z)) & mask_, run);
+void SpatialHash::visit_rows(const Reach& reach, const Visit& visit) const {
+  const FourInts low = reach.low >> kQuantaShift, high = reach.high >> kQuantaShift;
+  const auto run = static_cast<uint32_t>(high[0] - low[0]);
+  for (int32_t z = low[2]; z <= high[2]; ++z) {
+    for (int32_t y = low[1]; y <= high[1]; ++y) {
+      visit((static_cast<uint32_t>(low[0]) + row(y, z)) & mask_, run);
     }
   }
 }

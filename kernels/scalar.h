@@ -9,6 +9,7 @@
 #include "kernels/blocks.h"
 #include "kernels/face_pairs.h"
 #include "kernels/guided_stage.h"
+#include "kernels/hash_entries.h"
 #include "kernels/image.h"
 #include "kernels/integrate.h"
 #include "kernels/nearby.h"
@@ -107,6 +108,10 @@ uint32_t near_or_turned(const NearbyView& view, const NearbyQuery& query, uint32
 // face_pairs.h
 size_t face_pairs(const FaceBoxes& tree, uint32_t leaf, const uint32_t* nodes, size_t count,
                   CandidatePair* pairs);
+
+// hash_entries.h
+uint32_t entries_within(const uint32_t* ids, const CoarsePlace* places, const EntryRun* runs,
+                        size_t count, const CoarseBox& box, uint32_t* out);
 
 // voxels.h
 void normalize_voxels(VoxelType type, const void* voxels, size_t count, double low, double scale,

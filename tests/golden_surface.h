@@ -1,9 +1,12 @@
 // The kernels over vertices, each run once on random input: hashes of all that it writes.
 #pragma once
+#include <algorithm>
 #include <numeric>
+#include <random>
 
 #include "kernels/face_pairs.h"
 #include "kernels/guided_stage.h"
+#include "kernels/hash_entries.h"
 #include "kernels/integrate.h"
 #include "kernels/nearby.h"
 #include "kernels/ring_forces.h"
@@ -232,6 +235,33 @@ inline uint64_t face_pairs(SimdTarget simd) {
     }
     hash.add(static_cast<uint32_t>(count));
   }
+  return hash.value();
+}
+
+// ---- hash_entries.h
+
+inline uint64_t entries_within(SimdTarget simd) {
+  constexpr uint32_t kEntries = 3000;
+  std::mt19937 bits(8);
+  std::vector<uint32_t> ids(kEntries + plc::kRingLanes), places(kEntries + plc::kRingLanes);
+  for (uint32_t& id : ids) id = static_cast<uint32_t>(bits());
+  for (uint32_t& place : places) {
+    const auto q = [&] { return static_cast<int32_t>(bits() % plc::kPlacePeriod); };
+    const int32_t x = q(), y = q(), z = q();
+    place = plc::coarse_place(x, y, z);
+  }
+  std::vector<kernels::EntryRun> runs;
+  for (uint32_t i = 0; i < kEntries; i += i % 23 + 1) {
+    runs.push_back({i, std::min(i + i % 37, kEntries)});
+  }
+  std::vector<uint32_t> out(size_t{40} * runs.size() + plc::kRingLanes);
+  const int32_t low[3] = {100, -60, 300}, high[3] = {400, 250, 700};
+  const uint32_t count =
+      kernels::entries_within(simd, ids.data(), places.data(), runs.data(), runs.size(),
+                              plc::coarse_box(low, high), out.data());
+  Fnv hash;
+  for (uint32_t i = 0; i < count; ++i) hash.add(out[i]);
+  hash.add(count);
   return hash.value();
 }
 

@@ -60,6 +60,7 @@ const Golden kGolden[] = {
     {"move", move, 0xbb58aecf44fd97c5U},
     {"guided_move", guided_move, 0x167960bdbd0e7ee1U},
     {"face_pairs", face_pairs, 0x667f4cd2d86e1fc9U},
+    {"entries_within", entries_within, 0x88ed04c79033517aU},
     {"near_or_turned", near_or_turned, 0xb8912c2ebe22fab2U},
     {"sample_trilinear, unit", sample_trilinear<plc::UnitVoxel>, 0x853530250a972cf3U},
     {"sample_trilinear, u8", sample_trilinear<uint8_t>, 0xed69396132730a2dU},

@@ -1,6 +1,7 @@
 #include "engine/spatial_hash.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <set>
 
 #include "pyramid/memory.h"
@@ -230,5 +231,33 @@ TEST_CASE("a table is used again for a larger and for a smaller mesh", "[spatial
     scatter(mesh, random, count, 8);
     hash.build(mesh, 1, samples::kSerial);
     check_queries(mesh, hash, random, 8, 3);
+  }
+}
+
+TEST_CASE("what is entered again within its cell is found where it is now", "[spatial_hash]") {
+  samples::Random random(21);
+  Mesh mesh;
+  scatter(mesh, random, 2000, 8);
+  SpatialHash hash;
+  const float cell = 4;
+  hash.build(mesh, cell, samples::kSerial, 0.05F);
+  for (int step = 0; step < 4; ++step) {
+    plc::Vector<uint32_t> moved;
+    for (uint32_t v = static_cast<uint32_t>(step); v < mesh.slots(); v += 3) {
+      // To anywhere in the same cell.
+      const auto in_cell = [&](float x) {
+        return std::floor(x / cell) * cell + static_cast<float>(random.uniform(0, 0.999)) * cell;
+      };
+      const Vec3 p = mesh.at(v);
+      mesh.place(v, {in_cell(p.x), in_cell(p.y), in_cell(p.z)});
+      moved.push_back(v);
+    }
+    if (step % 2 == 0) {
+      for (const uint32_t v : moved) hash.insert(v, mesh.at(v));
+    } else {
+      hash.insert(mesh, moved, fixtures::ThreadExecutor(3));
+    }
+    CHECK(hash.inserted() == 0);
+    check_queries(mesh, hash, random, 8, 2);
   }
 }
