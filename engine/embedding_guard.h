@@ -4,9 +4,9 @@
 
 #include "engine/annular.h"
 #include "engine/axial.h"
-#include "kernels/box_lanes.h"
 #include "engine/spatial_hash.h"
 #include "engine/triangle_intersection.h"
+#include "kernels/box_lanes.h"
 #include "pyramid/memory.h"
 
 namespace plc {

@@ -22,6 +22,9 @@ inline Four load_four(const Packed& p) {
 inline void store_four(Four f, float* four) {
   std::memcpy(four, &f, sizeof f);
 }
+inline void store_four(FourInts f, int32_t* four) {
+  std::memcpy(four, &f, sizeof f);
+}
 inline Four min_four(Four a, Four b) {
   return b < a ? b : a;
 }

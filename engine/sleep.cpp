@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 
 #include "engine/blocks.h"
 #include "engine/constants.h"
@@ -13,9 +14,13 @@ namespace {
 
 bool all_calm(const Mesh& mesh, uint32_t block) {
   const uint8_t* calm = mesh.calm.data() + size_t{block} * kRingLanes;
-  uint8_t least = 255;
-  for (uint32_t lane = 0; lane < kRingLanes; ++lane) least = std::min(least, calm[lane]);
-  return least >= kCalmPeriod;
+  // Without a minimum, which GCC 12 looks for one by one.
+  uint8_t stirred[kRingLanes];
+  for (uint32_t lane = 0; lane < kRingLanes; ++lane) stirred[lane] = calm[lane] < kCalmPeriod;
+  uint64_t halves[2];
+  static_assert(sizeof halves == sizeof stirred);
+  std::memcpy(halves, stirred, sizeof halves);
+  return (halves[0] | halves[1]) == 0;
 }
 
 struct Limits {

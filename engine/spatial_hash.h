@@ -85,7 +85,12 @@ class SpatialHash {
   // What a query looks at.
   struct Reach {
     FourInts low, high;  // quanta
-    CoarseBox box() const { return coarse_box(&low[0], &high[0]); }
+    CoarseBox box() const {
+      int32_t from[4], to[4];
+      store_four(low, from);
+      store_four(high, to);
+      return coarse_box(from, to);
+    }
   };
   Reach reach(Vec3 low, Vec3 high) const {
     const Four far = Four{} + slack_;

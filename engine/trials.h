@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "kernels/box_lanes.h"
 #include "engine/candidate.h"
 #include "engine/embedding_guard.h"
+#include "kernels/box_lanes.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
 
