@@ -14,7 +14,7 @@ namespace plc {
 // The surface before a movement does not meet itself. Where it does after it, the vertices of the
 // faces that meet go back to where they were and lose their speed; again, until none meet: in the
 // worst case all are back where they started. Only faces with a vertex at risk (risk.h) are tested,
-// against each other.
+// against each other, and only where one of the two has moved.
 class MotionGuard {
  public:
   MotionGuard(Mesh& mesh, const Executor& executor, SimdTarget simd)

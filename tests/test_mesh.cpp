@@ -9,6 +9,7 @@
 #include "engine/constants.h"
 #include "engine/state_io.h"
 #include "pyramid/memory.h"
+#include "tests/kernel_fixtures.h"
 #include "tests/sample_surfaces.h"
 #include "tests/sample_volumes.h"
 
@@ -396,4 +397,44 @@ TEST_CASE("a saved mesh is restored unless it has values that no mesh has", "[me
   CHECK_FALSE(restored([&](Mesh& m) { m.normal.set(7, {NAN, 0, 0}); }));
   CHECK_FALSE(restored([&](Mesh& m) { m.path[7] = HUGE_VALF; }));
   CHECK_FALSE(restored([](Mesh& m) { m.delta = 0; }));
+}
+
+TEST_CASE("a renumbered mesh has room for what is created before the next renumbering", "[mesh]") {
+  Mesh mesh;
+  samples::fill_mesh(mesh, samples::sphere(4), 0.1);
+  plc::Vector<uint32_t> order(mesh.slots());
+  for (uint32_t i = 0; i < order.size(); ++i) order[i] = mesh.slots() - 1 - i;
+  mesh.renumber(order);
+  const plc::Packed* const packed = mesh.packed.data();
+  const float* const speeds = mesh.velocity.x.data();
+  CHECK(mesh.room() >= mesh.slots() + mesh.slots() / 40);
+  while (mesh.slots() < mesh.room()) mesh.create({1, 2, 3}, {});
+  CHECK(mesh.packed.data() == packed);
+  CHECK(mesh.velocity.x.data() == speeds);
+  mesh.create({1, 2, 3}, {});
+  CHECK(mesh.room() > mesh.slots());
+}
+
+TEST_CASE("vertices that are created at once are as those created one by one", "[mesh]") {
+  Mesh one, many;
+  for (Mesh* mesh : {&one, &many}) samples::fill_mesh(*mesh, samples::sphere(2), 0.4);
+  const uint32_t first = many.create_many(300, 6, fixtures::ThreadExecutor(3));
+  CHECK(first == one.slots());
+  plc::Neighbors ring;
+  for (uint32_t v = 0; v < 6; ++v) ring.push_back(v);
+  for (uint32_t i = 0; i < 300; ++i) {
+    const uint32_t v = one.create({}, {});
+    one.set_ring(v, ring);
+    many.exchange_ring(v, ring);
+  }
+  CHECK(many.vertex_count() == one.vertex_count());
+  CHECK(many.created() == one.created());
+  for (uint32_t v = 0; v < one.slots(); ++v) {
+    REQUIRE(many.valence(v) == one.valence(v));
+    for (uint32_t k = 0; k < one.valence(v); ++k) CHECK(many.neighbor(v, k) == one.neighbor(v, k));
+    CHECK(many.risk[v] == one.risk[v]);
+    CHECK(many.idle[v] == one.idle[v]);
+    CHECK(many.calm[v] == one.calm[v]);
+    CHECK(plc::squared_distance(many.at(v), one.at(v)) == 0);
+  }
 }
