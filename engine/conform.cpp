@@ -124,7 +124,7 @@ Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget si
   mesh.delta = delta;
   const uint32_t given = mesh.slots();
   if (Status s = divide_long_edges(mesh, counts); !s.ok()) return s;
-  if (mesh.slots() != given && !meeting_faces(mesh, schedule).empty()) {
+  if (mesh.slots() != given && !meeting_faces(mesh, schedule, simd).empty()) {
     return {ErrorCode::kInvalidData,
             "the surface has faces too thin to be divided in single precision"};
   }
@@ -145,7 +145,7 @@ Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget si
             "nothing is left of the surface at this resolution: it is too small or too thin"};
   }
   assert(broken_invariant(mesh).empty());
-  if (const auto meeting = meeting_faces(mesh, schedule); !meeting.empty()) {
+  if (const auto meeting = meeting_faces(mesh, schedule, simd); !meeting.empty()) {
     const Vec3 p = mesh.at(meeting[0][0]);
     char line[160];
     std::snprintf(line, sizeof line,

@@ -8,7 +8,6 @@
 namespace plc {
 
 using Four = float __attribute__((vector_size(16)));
-
 using FourInts = int32_t __attribute__((vector_size(16)));
 
 inline Four load_four(const float* four) {

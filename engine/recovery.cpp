@@ -176,7 +176,7 @@ void Recovery::adapt() {
   const double target = delta_of(level_);
   const auto steps = std::lround(std::log(mesh_.delta / target) / std::log(kRefinement));
   for (long i = 0; i < steps; ++i) {
-    refine(mesh_, schedule_, spec_.renumbering);
+    refine(mesh_, schedule_, spec_.renumbering, simd_);
     ++record().operations.refinement;
   }
   mesh_.delta = target;

@@ -102,7 +102,7 @@ bool Recovery::restore(StateReader& from) {
   if ((done_ || phase_ == Phase::kVerdict) && !mesh_.in_order()) return false;
   evolution_.restore(from);
   if (!from.ok()) return false;
-  if (!meeting_faces(mesh_, schedule_).empty()) return false;
+  if (!meeting_faces(mesh_, schedule_, simd_).empty()) return false;
   return phase_ == Phase::kStart || build_gradient_image().ok();
 }
 

@@ -135,9 +135,9 @@ FaceVertices create_face_vertices(Mesh& mesh, uint32_t old_slots, const Executor
 using Corners = std::array<uint32_t, 3>;
 
 // Those that meet others, and those without an area.
-Vector<Corners> wrong_faces(const Mesh& mesh, const Executor& executor) {
+Vector<Corners> wrong_faces(const Mesh& mesh, const Executor& executor, SimdTarget simd) {
   constexpr size_t kBlock = 4096;
-  Vector<Corners> wrong = meeting_faces(mesh, executor);
+  Vector<Corners> wrong = meeting_faces(mesh, executor, simd);
   std::vector<Vector<Corners>> flat(block_count(mesh.slots(), kBlock));
   const auto point = [&](uint32_t v) { return Point3{mesh.at(v).x, mesh.at(v).y, mesh.at(v).z}; };
   run_blocks(executor, mesh.slots(), kBlock, [&](size_t block, size_t begin, size_t end) {
@@ -171,9 +171,10 @@ void give_back_face(Mesh& mesh, const Vector<uint8_t>& of_face, uint32_t c) {
 // back the edges of all wrong faces; where these have none of the inverted ones, a vertex has been
 // rounded onto the far side of what is nearer than that, and its face comes back whole.
 // of_face: by id, whether a vertex was created in a face.
-void undo_where_meeting(Mesh& mesh, const Vector<uint8_t>& of_face, const Executor& executor) {
+void undo_where_meeting(Mesh& mesh, const Vector<uint8_t>& of_face, const Executor& executor,
+                        SimdTarget simd) {
   for (;;) {
-    const auto wrong = wrong_faces(mesh, executor);
+    const auto wrong = wrong_faces(mesh, executor, simd);
     if (wrong.empty()) return;
     bool undone = false;
     for (const auto& [a, b, c] : wrong) {
@@ -219,7 +220,7 @@ Vector<uint32_t> living_order(const Mesh& mesh) {
   return order;
 }
 
-void refine(Mesh& mesh, const Executor& executor, bool renumbering) {
+void refine(Mesh& mesh, const Executor& executor, bool renumbering, SimdTarget simd) {
   // Old vertices get the low ids, without gaps, so that new and old are told apart by id.
   if (!mesh.in_order())
     mesh.renumber(renumbering ? morton_order(mesh, executor) : living_order(mesh), executor);
@@ -255,7 +256,7 @@ void refine(Mesh& mesh, const Executor& executor, bool renumbering) {
   Vector<uint8_t> of_face(order.size());
   for (size_t i = 0; i < order.size(); ++i) of_face[i] = order[i] >= old_slots ? 1 : 0;
   mesh.renumber(order, executor);
-  undo_where_meeting(mesh, of_face, executor);
+  undo_where_meeting(mesh, of_face, executor, simd);
   if (mesh.vertex_count() != mesh.slots()) {
     mesh.renumber(renumbering ? morton_order(mesh, executor) : living_order(mesh), executor);
   }

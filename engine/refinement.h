@@ -1,6 +1,7 @@
 // Global refinement (3.4): edges shrink to 1 / sqrt 3, three times the vertices.
 #pragma once
 #include "engine/mesh.h"
+#include "kernels/simd.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
 
@@ -11,7 +12,8 @@ namespace plc {
 // faces share two edges. delta is divided by sqrt 3, ids are renumbered along a Morton curve, every
 // vertex is due for a check.
 // renumbering: false leaves the ids as they come, without gaps; for comparisons.
-void refine(Mesh& mesh, const Executor& executor, bool renumbering = true);
+void refine(Mesh& mesh, const Executor& executor, bool renumbering = true,
+            SimdTarget simd = best_simd_target());
 
 // The living vertices along a Morton curve of cells of delta, ties by id.
 Vector<uint32_t> morton_order(const Mesh& mesh, const Executor& executor = SerialExecutor());

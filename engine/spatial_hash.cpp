@@ -154,7 +154,11 @@ void SpatialHash::collect(const Mesh& mesh, Vec3 low, Vec3 high, Collected& out)
   count = kernels::entries_within(simd_, entries_.data(), places_.data(), out.entries.data(),
                                   out.entries.size(), reached.box(), out.found.data());
   out.found.resize_uninitialized(count);
-  if (!late_.empty()) append_late(out);
+  if (!late_.empty()) {
+    for (const Run& r : out.runs) {
+      visit_late(r.first, r.last, [&](uint32_t v) { out.found.push_back(v); });
+    }
+  }
   // Nothing that the loops write is among what they read: by pointers of their own.
   const Packed* const packed = mesh.packed.data();
   const uint32_t* const found = out.found.data();
@@ -170,17 +174,6 @@ void SpatialHash::collect(const Mesh& mesh, Vec3 low, Vec3 high, Collected& out)
     within += static_cast<size_t>(overlap_four(at, at, from, to));
   }
   out.ids.resize_uninitialized(static_cast<size_t>(within - out.ids.data()));
-}
-
-// What was inserted in the runs.
-void SpatialHash::append_late(Collected& out) const {
-  for (const Run& r : out.runs) {
-    for (uint32_t l = r.first >> kLateShift; l <= r.last >> kLateShift; ++l) {
-      for (uint32_t i = late_head_[l]; i != kEnd; i = late_[i].next) {
-        out.found.push_back(late_[i].id);
-      }
-    }
-  }
 }
 
 }  // namespace plc

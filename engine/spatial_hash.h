@@ -1,7 +1,6 @@
 // The uniform-grid spatial hash of the vertices: constraint (3) in O(s) (3.2).
 #pragma once
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -77,7 +76,9 @@ class SpatialHash {
   // Whether queries of v's bucket come across it; they know it to be here then.
   bool refresh(uint32_t v, FourInts quanta);
   void enter(uint32_t v, uint32_t b);
-  void append_late(Collected& out) const;
+  // visit(id) of what was inserted in buckets b .. last, and some next to them.
+  template <typename Visit>
+  void visit_late(uint32_t b, uint32_t last, const Visit& visit) const;
   uint32_t bucket(FourInts quanta) const {
     const FourInts cell = quanta >> kQuantaShift;
     return (static_cast<uint32_t>(cell[0]) + row(cell[1], cell[2])) & mask_;
@@ -135,6 +136,13 @@ void SpatialHash::visit_runs(uint32_t first, uint32_t run, const Visit& visit) c
 }
 
 template <typename Visit>
+void SpatialHash::visit_late(uint32_t b, uint32_t last, const Visit& visit) const {
+  for (uint32_t l = b >> kLateShift; l <= last >> kLateShift; ++l) {
+    for (uint32_t i = late_head_[l]; i != kEnd; i = late_[i].next) visit(late_[i].id);
+  }
+}
+
+template <typename Visit>
 void SpatialHash::visit_box(const Mesh& mesh, Vec3 low, Vec3 high, Visit&& visit) const {
   const auto look = [&](uint32_t v) {
     const Packed& p = mesh.packed[v];
@@ -150,10 +158,7 @@ void SpatialHash::visit_box(const Mesh& mesh, Vec3 low, Vec3 high, Visit&& visit
       for (uint32_t i = start_[b]; i < start_[last + 1]; ++i) {
         if (may_be_within(places_[i], box)) look(entries_[i]);
       }
-      if (late_.empty()) return;
-      for (uint32_t l = b >> kLateShift; l <= last >> kLateShift; ++l) {
-        for (uint32_t i = late_head_[l]; i != kEnd; i = late_[i].next) look(late_[i].id);
-      }
+      if (!late_.empty()) visit_late(b, last, look);
     });
   });
 }
