@@ -20,12 +20,12 @@ namespace plc {
 
 namespace {
 
-constexpr size_t kChunk = 128;         // queue entries per task
+constexpr size_t kChunk = 64;         // queue entries per task
 constexpr size_t kPairChunk = 16;      // ... of constraint (3), which take longer
 constexpr uint32_t kSortedQueue = 16;  // queues of more than one in so many vertices are not sorted
-constexpr size_t kSerialChunks = 2;    // queues up to so many chunks are not worth tasks
+constexpr size_t kSerialChunks = 1;    // queues up to so many chunks are not worth tasks
 constexpr size_t kTrialRun = 512;      // candidates per run of trials
-constexpr size_t kFewTrials = 16;      // not worth tasks
+constexpr size_t kFewTrials = 8;      // not worth tasks
 
 // Runs collect(entry of the queue, out) over chunks and joins the results in order.
 template <typename Collect>

@@ -7,13 +7,16 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <thread>
 
 #include "engine/float_environment.h"
-#include "engine/task_threads.h"
+#include "engine/team.h"
 #include "pyramid/memory.h"
 
+// Under ThreadSanitizer helpers are threads of our own: it follows the synchronisation of what is
+// instrumented, and oneTBB as the system has it is not.
 #if defined(__SANITIZE_THREAD__)
 #define PLC_TASK_THREADS 1
 #elif defined(__has_feature)
@@ -45,64 +48,85 @@ class FirstException {
   std::exception_ptr first_;
 };
 
-int default_threads() {
+// That oneTBB has for the process: the host's to control.
+int threads_of_process() {
+  if (PLC_TASK_THREADS != 0) return 1024;
+  using Control = oneapi::tbb::global_control;
+  const size_t most = Control::active_value(Control::max_allowed_parallelism);
+  return static_cast<int>(std::min<size_t>(most, 1024));
+}
+
+// Daemon threads of a host may still compute when the process ends, and oneTBB is gone before they
+// are: it is not asked for threads any more. What this library registers is destroyed before what
+// the libraries that it needs have registered.
+std::mutex end_mutex;
+bool process_ends = false;
+const struct EndOfProcess {
+  ~EndOfProcess() {
+    const std::lock_guard<std::mutex> lock(end_mutex);
+    process_ends = true;
+  }
+} end_of_process;
+
+int threads_of_caller() {
+  if (PLC_TASK_THREADS == 0) return oneapi::tbb::this_task_arena::max_concurrency();
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 }  // namespace
 
-struct Schedule::Arena {
-  explicit Arena(int threads) : tbb(threads) {}
-  oneapi::tbb::task_arena tbb;
+// Where threads come from: an arena of oneTBB, this schedule's own or that of whoever calls.
+class Schedule::Arena {
+ public:
+  // threads: of an arena of its own; 0: the caller's.
+  explicit Arena(int threads) {
+    if (threads > 0 && PLC_TASK_THREADS == 0) {
+      own_ = std::make_unique<oneapi::tbb::task_arena>(threads);
+    }
+  }
+  ~Arena() { dismiss(); }
+  Arena(const Arena&) = delete;
+  Arena& operator=(const Arena&) = delete;
+
+  void run(int threads, size_t tasks, const std::function<void(size_t)>& body);
+  // Several loops at a time, which may run others.
+  void run_wave(int threads, size_t tasks, const std::function<void(size_t)>& body);
+
+ private:
+  void dismiss();
+  void summon(uint32_t slot);
+  void run_of_tbb(size_t tasks, const std::function<void(size_t)>& body);
+
+  std::unique_ptr<oneapi::tbb::task_arena> own_;
+  std::shared_ptr<Team> team_;  // with every helper that has been summoned, and may come late
+  bool in_wave_ = false;
+#if PLC_TASK_THREADS
+  std::map<uint32_t, std::thread> helpers_;
+#endif
 };
 
-Schedule::Schedule(const Threads& threads) : threads_(threads) {
-  if (threads.parallel_for != nullptr || PLC_TASK_THREADS != 0) return;
-  // More than oneTBB has for the process it does not give, and would say so on stderr; how many it
-  // has is the host's to control.
-  using Control = oneapi::tbb::global_control;
-  const size_t most = Control::active_value(Control::max_allowed_parallelism);
-  threads_.count = static_cast<int>(std::min(static_cast<size_t>(threads.count), most));
-  if (threads_.count > 1) arena_ = std::make_unique<Arena>(threads_.count);
-}
-Schedule::~Schedule() = default;
-
-int Schedule::threads() const {
-  if (threads_.parallel_for != nullptr) return 0;
-  if (threads_.count != 0) return threads_.count;
-  return PLC_TASK_THREADS != 0 ? default_threads()
-                               : oneapi::tbb::this_task_arena::max_concurrency();
-}
-
-void Schedule::run(size_t tasks, const std::function<void(size_t)>& body) const {
-  if (tasks <= 1 || threads() == 1) {
-    for (size_t i = 0; i < tasks; ++i) body(i);
-    return;
+void Schedule::Arena::run(int threads, size_t tasks, const std::function<void(size_t)>& body) {
+  if (in_wave_) return run_of_tbb(tasks, body);
+  const auto members = static_cast<uint32_t>(threads);
+  if (team_ == nullptr || team_->members() < members) {
+    dismiss();
+    team_ = std::make_shared<Team>(members);
   }
-  Memory& memory = Memory::current();
-  FirstException exception;
-  run_parallel(tasks, [&](size_t i) {
-    const MemoryScope scope(memory);
-    try {
-      body(i);
-    } catch (...) {
-      exception.take();
-    }
-  });
-  exception.rethrow();
+  const auto summon_helper = [this](uint32_t slot) { summon(slot); };
+  if (team_->run(tasks, members, body, summon_helper)) return;
+  for (size_t i = 0; i < tasks; ++i) body(i);  // a loop within a loop
 }
 
-void Schedule::run_parallel(size_t tasks, const std::function<void(size_t)>& body) const {
-  if (threads_.parallel_for != nullptr) {
-    const auto task = [](size_t i, void* data) {
-      const FloatEnvironment environment;
-      (*static_cast<const std::function<void(size_t)>*>(data))(i);
-    };
-    threads_.parallel_for(tasks, task, const_cast<std::function<void(size_t)>*>(&body),
-                          threads_.user);
-    return;
-  }
-  if (PLC_TASK_THREADS != 0) return run_on_task_threads(threads(), tasks, body);
+// Loops within loops are what oneTBB is good at.
+void Schedule::Arena::run_wave(int threads, size_t tasks, const std::function<void(size_t)>& body) {
+  if (PLC_TASK_THREADS != 0) return run(threads, tasks, body);
+  dismiss();
+  in_wave_ = true;
+  run_of_tbb(tasks, body);
+  in_wave_ = false;
+}
+
+void Schedule::Arena::run_of_tbb(size_t tasks, const std::function<void(size_t)>& body) {
   // Of no group of the caller's: that one may be cancelled, and its loops then do nothing. Tasks
   // compute as this thread does.
   using Group = oneapi::tbb::task_group_context;
@@ -111,13 +135,95 @@ void Schedule::run_parallel(size_t tasks, const std::function<void(size_t)>& bod
     oneapi::tbb::parallel_for(
         size_t{0}, tasks, [&](size_t i) { body(i); }, group);
   };
-  if (arena_ != nullptr) {
-    arena_->tbb.execute(loop);
+  if (own_ != nullptr) {
+    own_->execute(loop);
   } else {
     // A thread that waits for the loop takes no other work of the host's meanwhile, which might
     // come back to this context.
     oneapi::tbb::this_task_arena::isolate(loop);
   }
+}
+
+// One that cannot be had is done without.
+void Schedule::Arena::summon(uint32_t slot) {
+  const auto serve = [team = team_, slot] { team->serve(slot); };
+  const std::lock_guard<std::mutex> lock(end_mutex);
+  if (process_ends || static_cast<int>(slot) >= threads_of_process()) return;
+  try {
+#if PLC_TASK_THREADS
+    std::thread& helper = helpers_[slot];
+    if (helper.joinable()) helper.join();
+    helper = std::thread(serve);
+#else
+    if (own_ != nullptr) {
+      own_->enqueue(serve);
+    } else {
+      oneapi::tbb::this_task_arena::enqueue(serve);
+    }
+#endif
+  } catch (const std::exception&) {
+  }
+}
+
+void Schedule::Arena::dismiss() {
+  if (team_ != nullptr) team_->dismiss();
+#if PLC_TASK_THREADS
+  for (auto& [slot, helper] : helpers_) helper.join();
+  helpers_.clear();
+#endif
+}
+
+Schedule::Schedule(const Threads& threads) : threads_(threads) {
+  if (threads.parallel_for != nullptr) return;
+  // More than oneTBB has it does not give, and would say so on stderr.
+  threads_.count = std::min(threads.count, threads_of_process());
+  if (threads_.count != 1) arena_ = std::make_unique<Arena>(threads_.count);
+}
+Schedule::~Schedule() = default;
+
+int Schedule::threads() const {
+  if (threads_.parallel_for != nullptr) return 0;
+  return threads_.count != 0 ? threads_.count : threads_of_caller();
+}
+
+void Schedule::run(size_t tasks, const std::function<void(size_t)>& body) const {
+  run(tasks, body, false);
+}
+
+// wave: the tasks are passes, with loops of their own.
+void Schedule::run(size_t tasks, const std::function<void(size_t)>& body, bool wave) const {
+  const int most = threads();
+  if (tasks <= 1 || most == 1) {
+    for (size_t i = 0; i < tasks; ++i) body(i);
+    return;
+  }
+  Memory& memory = Memory::current();
+  FirstException exception;
+  const auto guarded = [&](size_t i) {
+    const MemoryScope scope(memory);
+    try {
+      body(i);
+    } catch (...) {
+      exception.take();
+    }
+  };
+  if (arena_ == nullptr) {
+    run_on_host(tasks, guarded);
+  } else if (wave) {
+    arena_->run_wave(most, tasks, guarded);
+  } else {
+    arena_->run(most, tasks, guarded);
+  }
+  exception.rethrow();
+}
+
+void Schedule::run_on_host(size_t tasks, const std::function<void(size_t)>& body) const {
+  const auto task = [](size_t i, void* data) {
+    const FloatEnvironment environment;
+    (*static_cast<const std::function<void(size_t)>*>(data))(i);
+  };
+  threads_.parallel_for(tasks, task, const_cast<std::function<void(size_t)>*>(&body),
+                        threads_.user);
 }
 
 namespace {
@@ -156,21 +262,15 @@ void Schedule::run_passes(const std::vector<Pass>& passes, bool small, const Pas
     passes[i].body();
     seconds[i] = now() - start;
   };
-  const auto run_waves = [&] {
-    for (size_t begin = 0, end = 0; begin < passes.size(); begin = end) {
-      end = wave_end(passes, begin);
-      if (in_order || end - begin == 1) {
-        for (size_t i = begin; i < end; ++i) run_pass(i);
-      } else {
-        run(end - begin, [&](size_t i) { run_pass(begin + i); });
-      }
-      if (after) after(names(passes, begin, end));
+  for (size_t begin = 0, end = 0; begin < passes.size(); begin = end) {
+    end = wave_end(passes, begin);
+    if (in_order || end - begin == 1) {
+      for (size_t i = begin; i < end; ++i) run_pass(i);
+    } else {
+      run(
+          end - begin, [&](size_t i) { run_pass(begin + i); }, true);
     }
-  };
-  if (arena_ == nullptr || in_order) {
-    run_waves();
-  } else {
-    arena_->tbb.execute(run_waves);  // once, not loop by loop
+    if (after) after(names(passes, begin, end));
   }
   for (size_t i = 0; i < passes.size(); ++i) *passes[i].seconds += seconds[i];
 }

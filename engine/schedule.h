@@ -81,7 +81,7 @@ struct Threads {
   using ParallelFor = void (*)(size_t tasks, Task task, void* data, void* user);
 
   int count = 1;  // 0: as many as the arena of oneTBB that the caller is in, which then runs them
-  ParallelFor parallel_for = nullptr;  // null: oneTBB, or what stands for it (task_threads.h)
+  ParallelFor parallel_for = nullptr;  // null: oneTBB's, as a team (team.h)
   void* user = nullptr;
 };
 
@@ -103,12 +103,12 @@ class Schedule final : public Executor {
   void run_passes(const std::vector<Pass>& passes, bool small, const PassEnd& after = {}) const;
 
  private:
-  struct Arena;
-  void run_parallel(size_t tasks, const std::function<void(size_t)>& body) const;
+  class Arena;
+  void run(size_t tasks, const std::function<void(size_t)>& body, bool wave) const;
+  void run_on_host(size_t tasks, const std::function<void(size_t)>& body) const;
 
   Threads threads_;
-  std::unique_ptr<Arena>
-      arena_;  // of oneTBB; null where there is one thread, or none of it is used
+  std::unique_ptr<Arena> arena_;  // null where there is one thread, or the host has lent its own
 };
 
 // Seconds of a monotonic clock.

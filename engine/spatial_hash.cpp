@@ -14,7 +14,7 @@ namespace {
 
 // Buckets are sorted in this many parts, each by itself.
 constexpr uint32_t kParts = 16;
-constexpr size_t kBlock = 4096;  // vertices per task
+constexpr size_t kBlock = 1024;  // vertices per task
 
 }  // namespace
 
@@ -98,7 +98,7 @@ void SpatialHash::insert(uint32_t v, Vec3 p) {
 }
 
 void SpatialHash::insert(const Mesh& mesh, const Vector<uint32_t>& ids, const Executor& executor) {
-  constexpr size_t kTask = 512;
+  constexpr size_t kTask = 128;
   const size_t tasks = block_count(ids.size(), kTask);
   missing_.resize(std::max(missing_.size(), tasks));
   run_blocks(executor, ids.size(), kTask, [&](size_t task, size_t begin, size_t end) {

@@ -12,7 +12,7 @@ namespace plc {
 
 namespace {
 
-constexpr size_t kTaskVertices = 256;
+constexpr size_t kTaskVertices = 128;
 // A group is what follows one another in a box whose sides are no longer than this, in delta:
 // vertices are numbered along a curve that keeps neighbours together.
 constexpr float kGroupBox = 8;

@@ -10,7 +10,7 @@ namespace plc {
 
 namespace {
 
-constexpr size_t kTaskTrials = 8;
+constexpr size_t kTaskTrials = 4;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr Box3 kNothing{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
 
