@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <utility>
 
 #include "engine/annular.h"
@@ -12,6 +13,7 @@
 #include "engine/deletion.h"
 #include "engine/edge_constraints.h"
 #include "engine/inversion.h"
+#include "engine/parallel_sort.h"
 #include "engine/proximity.h"
 #include "kernels/ring_forces.h"
 #include "pyramid/memory.h"
@@ -20,31 +22,23 @@ namespace plc {
 
 namespace {
 
-constexpr size_t kChunk = 64;         // queue entries per task
+constexpr size_t kChunk = 64;          // queue entries per task
 constexpr size_t kPairChunk = 16;      // ... of constraint (3), which take longer
 constexpr uint32_t kSortedQueue = 16;  // queues of more than one in so many vertices are not sorted
-constexpr size_t kSerialChunks = 1;    // queues up to so many chunks are not worth tasks
 constexpr size_t kTrialRun = 512;      // candidates per run of trials
-constexpr size_t kFewTrials = 8;      // not worth tasks
+constexpr size_t kFewTrials = 8;       // not worth tasks
 
-// Runs collect(entry of the queue, out) over chunks and joins the results in order.
-template <typename Collect>
-Vector<Candidate> collect_in_order(const Executor& executor, const Vector<uint32_t>& queue,
-                                   size_t chunk_size, Collect&& collect) {
-  Vector<Candidate> all;
-  if (queue.size() <= kSerialChunks * chunk_size) {
-    for (const uint32_t v : queue) collect(v, all);
-    std::sort(all.begin(), all.end());
-    return all;
-  }
-  const size_t chunks = block_count(queue.size(), chunk_size);
-  std::vector<Vector<Candidate>> found(chunks);
-  executor.run(chunks, [&](size_t chunk) {
-    const size_t end = std::min((chunk + 1) * chunk_size, queue.size());
-    for (size_t i = chunk * chunk_size; i < end; ++i) collect(queue[i], found[chunk]);
+// Runs collect(i, out) for [0, count) by chunks, and sorts what they have found.
+template <typename Less, typename Collect>
+Vector<Candidate> collect_sorted(const Executor& executor, size_t count, size_t chunk_size,
+                                 const Less& less, const Collect& collect) {
+  std::vector<Vector<Candidate>> found(block_count(count, chunk_size));
+  run_blocks(executor, count, chunk_size, [&](size_t chunk, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) collect(i, found[chunk]);
   });
+  Vector<Candidate> all;
   for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
-  std::sort(all.begin(), all.end());
+  parallel_sort(all, executor, less);
   return all;
 }
 
@@ -189,7 +183,7 @@ uint32_t Resolution::stamp_queue(const Vector<uint32_t>& queue) {
 void Resolution::unique(Vector<uint32_t>& queue) {
   stamp_.resize(mesh_.slots(), 0);
   if (queue.size() < mesh_.slots() / kSortedQueue) {
-    std::sort(queue.begin(), queue.end());
+    parallel_sort(queue, executor_);
     queue.erase(std::unique(queue.begin(), queue.end()), queue.end());
     std::erase_if(queue, [&](uint32_t v) { return !mesh_.alive(v); });
     return;
@@ -213,7 +207,8 @@ void Resolution::resolve_edges(OperationCounts& counts) {
 
 Vector<Candidate> Resolution::edge_candidates(const Vector<uint32_t>& queue) {
   const uint32_t stamp = stamp_queue(queue);
-  return collect_in_order(executor_, queue, kChunk, [&](uint32_t u, Vector<Candidate>& out) {
+  const auto collect = [&](size_t i, Vector<Candidate>& out) {
+    const uint32_t u = queue[i];
     const uint32_t d = mesh_.valence(u);
     for (uint32_t k = 0; k < d; ++k) {
       const uint32_t v = mesh_.neighbor(u, k);
@@ -227,7 +222,8 @@ Vector<Candidate> Resolution::edge_candidates(const Vector<uint32_t>& queue) {
       }
       if (const auto candidate = edge_candidate(mesh_, from, slot)) out.push_back(*candidate);
     }
-  });
+  };
+  return collect_sorted(executor_, queue.size(), kChunk, std::less<Candidate>(), collect);
 }
 
 // One pass over (3); false when nothing was left to do. The first pass takes what take_due() has
@@ -245,23 +241,23 @@ bool Resolution::resolve_pairs(bool first, OperationCounts& counts) {
 
 Vector<Candidate> Resolution::pair_candidates(const Vector<uint32_t>& queue, bool first) {
   const uint32_t stamp = stamp_queue(queue);
-  auto all =
-      collect_in_order(executor_, queue, kPairChunk, [&](uint32_t u, Vector<Candidate>& out) {
-        proximity_candidates(mesh_, hash_, u, stamp_, stamp, iteration_, out);
-      });
-  if (first) {
-    for (const VertexPair& pair : surroundings_.too_near()) {
-      if (const auto candidate = pair_candidate(mesh_, pair.u, pair.w, iteration_)) {
-        all.push_back(*candidate);
-      }
+  const size_t known = first ? surroundings_.too_near().size() : 0;
+  const auto collect = [&](size_t i, Vector<Candidate>& out) {
+    if (i >= known) {
+      proximity_candidates(mesh_, hash_, queue[i - known], stamp_, stamp, iteration_, out);
+      return;
     }
-  }
+    const VertexPair& pair = surroundings_.too_near()[i];
+    if (const auto candidate = pair_candidate(mesh_, pair.u, pair.w, iteration_)) {
+      out.push_back(*candidate);
+    }
+  };
   // Nearest first whatever they ask for; a pair may have been found twice.
   const auto nearer = [](const Candidate& l, const Candidate& r) {
     return std::tie(l.key, l.edge.u, l.edge.v, l.operation, l.edge.a) <
            std::tie(r.key, r.edge.u, r.edge.v, r.operation, r.edge.a);
   };
-  std::sort(all.begin(), all.end(), nearer);
+  auto all = collect_sorted(executor_, known + queue.size(), kPairChunk, nearer, collect);
   const auto same = [](const Candidate& l, const Candidate& r) {
     return l.operation == r.operation && l.edge.u == r.edge.u && l.edge.v == r.edge.v;
   };

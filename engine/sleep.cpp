@@ -12,6 +12,8 @@ namespace plc {
 
 namespace {
 
+constexpr size_t kTaskCalm = 512;  // blocks
+
 bool all_calm(const Mesh& mesh, uint32_t block) {
   const uint8_t* calm = mesh.calm.data() + size_t{block} * kRingLanes;
   // Without a minimum, which GCC 12 looks for one by one.
@@ -66,11 +68,16 @@ uint32_t observe_block(Mesh& mesh, uint32_t first, const Limits& limits) {
 void Sleep::choose(bool all) {
   const uint32_t blocks = mesh_.padded() / kRingLanes;
   asleep_.resize(blocks, 0);
+  calm_.resize(blocks);
+  run_blocks(executor_, blocks, kTaskCalm, [&](size_t, size_t begin, size_t end) {
+    for (size_t block = begin; block < end; ++block) {
+      calm_[block] = !all && calm_speed_ > 0 && all_calm(mesh_, static_cast<uint32_t>(block));
+    }
+  });
   awake_.clear();
   fallen_.clear();
   for (uint32_t block = 0; block < blocks; ++block) {
-    const bool asleep = !all && calm_speed_ > 0 && all_calm(mesh_, block);
-    if (!asleep) {
+    if (calm_[block] == 0) {
       awake_.push_back(block);
     } else if (asleep_[block] == 0) {
       fallen_.push_back(block);
@@ -79,8 +86,8 @@ void Sleep::choose(bool all) {
         mesh_.displacement.set(v, {});
       }
     }
-    asleep_[block] = asleep ? 1 : 0;
   }
+  asleep_.swap(calm_);
   any_asleep_ = awake_.size() < blocks;
   find_rim();
 }

@@ -53,8 +53,8 @@ class Sleep {
   float calm_speed_;
   bool any_asleep_ = false;
   Vector<uint32_t> awake_, fallen_, awake_and_rim_;
-  Vector<uint8_t> asleep_, touched_;     // by block
-  std::vector<Vector<uint32_t>> found_;  // per task
+  Vector<uint8_t> asleep_, calm_, touched_;  // by block
+  std::vector<Vector<uint32_t>> found_;      // per task
 };
 
 }  // namespace plc

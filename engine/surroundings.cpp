@@ -4,6 +4,7 @@
 
 #include "engine/blocks.h"
 #include "engine/constants.h"
+#include "engine/parallel_sort.h"
 #include "engine/risk.h"
 #include "kernels/nearby.h"
 #include "pyramid/memory.h"
@@ -77,7 +78,7 @@ void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash, 
     too_near_.insert(too_near_.end(), task.too_near.begin(), task.too_near.end());
     at_risk_.insert(at_risk_.end(), task.at_risk.begin(), task.at_risk.end());
   }
-  std::sort(too_near_.begin(), too_near_.end());
+  parallel_sort(too_near_, executor_);
   too_near_.erase(std::unique(too_near_.begin(), too_near_.end()), too_near_.end());
 }
 
