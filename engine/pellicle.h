@@ -127,7 +127,8 @@ typedef struct plc_context_options {
   size_t struct_size;
   int threads;   /* 1 .. 1024: at most so many, and no more than oneTBB has for the process (one per
                     core, unless the host says otherwise); 1 starts none; 0: those of the caller's
-                    oneTBB arena. Ignored with parallel_for */
+                    oneTBB arena. They stay awake between loops, up to 1 ms after the last.
+                    Ignored with parallel_for */
   plc_simd simd; /* must be available on this machine */
   plc_parallel_for_fn parallel_for; /* NULL: oneTBB */
   void* parallel_for_user;
