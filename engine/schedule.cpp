@@ -84,7 +84,7 @@ class Schedule::Arena {
       own_ = std::make_unique<oneapi::tbb::task_arena>(threads);
     }
   }
-  ~Arena() { dismiss(); }
+  ~Arena() { leave_team(); }
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
 
@@ -93,7 +93,7 @@ class Schedule::Arena {
   void run_wave(int threads, size_t tasks, const std::function<void(size_t)>& body);
 
  private:
-  void dismiss();
+  void leave_team();
   void summon(uint32_t slot);
   void run_of_tbb(size_t tasks, const std::function<void(size_t)>& body);
 
@@ -109,7 +109,7 @@ void Schedule::Arena::run(int threads, size_t tasks, const std::function<void(si
   if (in_wave_) return run_of_tbb(tasks, body);
   const auto members = static_cast<uint32_t>(threads);
   if (team_ == nullptr || team_->members() < members) {
-    dismiss();
+    leave_team();
     team_ = std::make_shared<Team>(members);
   }
   const auto summon_helper = [this](uint32_t slot) { summon(slot); };
@@ -120,7 +120,7 @@ void Schedule::Arena::run(int threads, size_t tasks, const std::function<void(si
 // Loops within loops are what oneTBB is good at.
 void Schedule::Arena::run_wave(int threads, size_t tasks, const std::function<void(size_t)>& body) {
   if (PLC_TASK_THREADS != 0) return run(threads, tasks, body);
-  dismiss();
+  if (team_ != nullptr) team_->dismiss();
   in_wave_ = true;
   run_of_tbb(tasks, body);
   in_wave_ = false;
@@ -165,12 +165,14 @@ void Schedule::Arena::summon(uint32_t slot) {
   }
 }
 
-void Schedule::Arena::dismiss() {
-  if (team_ != nullptr) team_->dismiss();
+void Schedule::Arena::leave_team() {
+  if (team_ == nullptr) return;
+  team_->dismiss();
 #if PLC_TASK_THREADS
   for (auto& [slot, helper] : helpers_) helper.join();
   helpers_.clear();
 #endif
+  team_->wait_for_helpers();
 }
 
 Schedule::Schedule(const Threads& threads) : threads_(threads) {

@@ -96,8 +96,7 @@ void Team::serve(uint32_t slot) {
   places_[slot].summoned.store(false);
 }
 
-void Team::dismiss() {
-  ++dismissals_;
+void Team::wait_for_helpers() const {
   const auto until = Clock::now() + kPatience;
   for (const Place& place : places_) {
     while (place.summoned.load() && Clock::now() < until) std::this_thread::yield();

@@ -32,9 +32,10 @@ class Team {
            const Summon& summon);
   // Helps with loops until none has come for kAwake, for kTenure at most, or until dismiss().
   void serve(uint32_t slot);
-  // Helpers leave as soon as they have no task, and are waited for a while. They may be summoned
-  // again.
-  void dismiss();
+  // Helpers leave as soon as they have no task. They may be summoned again.
+  void dismiss() { ++dismissals_; }
+  // Until all that were summoned have left, for kPatience at most.
+  void wait_for_helpers() const;
 
  private:
   struct alignas(64) Place {
@@ -47,16 +48,16 @@ class Team {
   size_t share_end(uint32_t share) const { return tasks_ * (share + 1) / joined_; }
   void work(uint32_t slot);
 
-  std::vector<Place> places_;  // by slot; the caller's is 0
-  std::atomic<bool> busy_{false};
-  uint64_t loops_ = 0;
-  // Of the loop at hand: written while no helper works.
+  // In one line of the cache but for `open_`, which those who wait look at.
+  alignas(64) std::atomic<uint32_t> working_{0};  // helpers
+  uint32_t joined_ = 1;                           // joined_, body_, tasks_: of the loop at hand,
+  uint64_t loops_ = 0;                            // written while no helper works
   const std::function<void(size_t)>* body_ = nullptr;
   size_t tasks_ = 0;
-  uint32_t joined_ = 1;
-  alignas(64) std::atomic<uint64_t> open_{0};
-  alignas(64) std::atomic<uint32_t> working_{0};  // helpers
+  std::vector<Place> places_;  // by slot; the caller's is 0
   std::atomic<uint32_t> dismissals_{0};
+  std::atomic<bool> busy_{false};
+  alignas(64) std::atomic<uint64_t> open_{0};
 };
 
 }  // namespace plc
