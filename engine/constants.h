@@ -134,7 +134,5 @@ inline constexpr int kPadVoxels = 6;
 
 // Vertices per task: large enough to pay for a task, a multiple of the ring block.
 inline constexpr uint32_t kGrain = 1024;
-// Below this many vertices everything runs on the calling thread.
-inline constexpr uint32_t kSerialBelow = 1280;
 
 }  // namespace plc

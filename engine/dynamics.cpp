@@ -102,12 +102,7 @@ Blocks Dynamics::task(size_t index) const {
 }
 
 void Dynamics::for_tasks(const std::function<void(size_t, const Blocks&)>& body) const {
-  const auto run = [&](size_t i) { body(i, task(i)); };
-  if (blocks_.size() * kRingLanes < kSerialBelow) {
-    for (size_t i = 0; i < tasks(); ++i) run(i);
-  } else {
-    schedule_.run(tasks(), run);
-  }
+  schedule_.run(tasks(), [&](size_t i) { body(i, task(i)); });
 }
 
 void Dynamics::for_runs(const std::function<void(uint32_t, uint32_t)>& body) const {
@@ -133,8 +128,7 @@ Status Dynamics::step(const Guide& guide, Seconds& seconds, const Sleep* sleep,
   time_step_ = stable_time_step(model_, guide.user == nullptr ? 0 : guide.user->stiffness());
   status_ = {};
   // In order, the user's force is called on the calling thread.
-  schedule_.run_passes(passes(guide, seconds),
-                       user_force || blocks_.size() * kRingLanes < kSerialBelow, after);
+  schedule_.run_passes(passes(guide, seconds), user_force || tasks() <= 1, after);
   if (status_.ok()) end_step();
   return status_;
 }

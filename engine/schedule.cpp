@@ -122,8 +122,11 @@ void Schedule::Arena::run_wave(int threads, size_t tasks, const std::function<vo
   if (PLC_TASK_THREADS != 0) return run(threads, tasks, body);
   if (team_ != nullptr) team_->dismiss();
   in_wave_ = true;
+  const struct End {
+    bool& in_wave;
+    ~End() { in_wave = false; }
+  } end{in_wave_};
   run_of_tbb(tasks, body);
-  in_wave_ = false;
 }
 
 void Schedule::Arena::run_of_tbb(size_t tasks, const std::function<void(size_t)>& body) {

@@ -1,4 +1,4 @@
-// Threads: parallel loops and the task graph of a step. The only file pair that names oneTBB.
+// Threads: parallel loops and the task graph of a step. The only file pair that calls oneTBB.
 //
 // The determinism contract: the same input and parameters give the same bits for any number of
 // threads, on any SIMD target, by GCC and Clang, run after run. It holds by construction, as long
@@ -8,8 +8,7 @@
 //              no task of the pass writes; marks that several tasks set to the same value are
 //              atomic (sleep.cpp). Tasks are fixed blocks (blocks.h, kGrain), whatever the
 //              number of threads. No task asks which thread it is on, how many there are, what time
-//              it is, or in which order tasks ended. kSerialBelow chooses who runs the tasks, never
-//              what they are.
+//              it is, or in which order tasks ended.
 //   Sums       Over a block in the order of lane_sum.h, over blocks from the first to the last.
 //              No atomics on floats, no reduction by the thread library.
 //   Order      What tasks have found is joined in the order of tasks. Sorts have total keys: two

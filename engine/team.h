@@ -1,10 +1,8 @@
 // Threads that run one parallel loop after the other, awake in between.
 //
-// A step is some twenty loops of 10 to 1000 us with serial code between them, and oneTBB's workers
-// go to sleep after 0.1 ms. Two threads share out 100 loops of 20 us in 2.09 ms here, in 2.20 with
-// 0.3 ms of serial code before each (bench_passes, loops_after_); by loops of oneTBB it was 2.15
-// and 4.2. That was a tenth of the coarse levels of a head CT. A team has oneTBB's workers, each as
-// one task that serves loop after loop.
+// A step is some twenty loops with serial code between them, in which oneTBB's workers go to sleep.
+// A team has these workers, each as one task that serves loop after loop. perf/bench_loops
+// compares.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -16,7 +14,7 @@ namespace plc {
 
 class Team {
  public:
-  // Asks for a thread that calls serve(slot), now or later or never.
+  // Asks for a thread that calls serve(slot), now or later or never. Does not throw.
   using Summon = std::function<void(uint32_t slot)>;
   // The calling thread, and up to members - 1 helpers.
   explicit Team(uint32_t members) : places_(members) {}

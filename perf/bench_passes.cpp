@@ -277,35 +277,6 @@ void add_topology(Suite& suite, const Mesh& start) {
   });
 }
 
-void busy(double seconds) {
-  for (const double start = plc::now(); plc::now() < start + seconds;) {
-  }
-}
-
-// What it takes to share out loops: 100 of 8 tasks of 5 us each, 4 ms on one thread, with serial
-// code of so many us before each, which is not counted.
-void add_loops(Suite& suite, const Mesh& start, int between) {
-  suite.add("loops_after_" + std::to_string(between) + "us", start, [between](Bench& b) {
-    auto runs = std::make_shared<std::array<uint8_t, 8>>();
-    const auto measured = [&b, runs, between] {
-      runs->fill(0);
-      double seconds = 0;
-      for (int loop = 0; loop < 100; ++loop) {
-        busy(between * 1e-6);
-        seconds += timed([&] {
-          b.schedule.run(runs->size(), [&](size_t i) {
-            busy(5e-6);
-            ++(*runs)[i];
-          });
-        });
-      }
-      return seconds;
-    };
-    return Suite::Case{[] {}, measured,
-                       [runs] { return bench::hash_bytes(runs->data(), runs->size()); }};
-  });
-}
-
 // One whole iteration, every vertex awake.
 void add_iteration(Suite& suite, const std::string& name, const Mesh& start) {
   suite.add(name, start, [&suite](Bench& b) {
@@ -369,7 +340,6 @@ void add_all(Suite& suite) {
   add_resolution(suite, "resolution_calm", head.calm);
   add_resolution(suite, "resolution_moving", head.moving);
   add_dynamics(suite, head.calm);
-  for (const int between : {0, 50, 300}) add_loops(suite, head.calm, between);
   add_iteration(suite, "iteration_calm", head.calm);
   add_iteration(suite, "iteration_moving", head.moving);
   add_hash_build(suite, head.calm);

@@ -187,7 +187,7 @@ TEST_CASE("no pass of a large run tells one scalar thread from three of the best
   const Run run = large_run();
   const Trace one = samples::traced(run, 1, SimdTarget::kScalar);
   // What this run is for.
-  CHECK(one.most_beside_asleep > plc::kSerialBelow);
+  CHECK(one.most_beside_asleep > 4 * plc::kGrain);
   plc::OperationCounts operations;
   int64_t late = 0;
   for (const plc::LevelRecord& record : one.records) {
@@ -207,7 +207,7 @@ TEST_CASE("no pass of a run with every force tells one scalar thread from three 
           "[determinism]") {
   const Run run = forces_run();
   const Trace one = samples::traced(run, 1, SimdTarget::kScalar);
-  CHECK(one.most_awake > plc::kSerialBelow);
+  CHECK(one.most_awake > 4 * plc::kGrain);
   CHECK(samples::first_difference(one, samples::traced(run, 3, plc::best_simd_target())) == "");
 }
 

@@ -441,7 +441,7 @@ TEST_CASE("a step has the same bits on every thread count and SIMD target", "[dy
         model.max_move = 0.03F;
         Mesh mesh;
         samples::fill_mesh(mesh, samples::moved(samples::sphere(5), 0, 0, 0, 8), 0.3);
-        REQUIRE(mesh.padded() > plc::kSerialBelow);
+        REQUIRE(mesh.padded() > 4 * plc::kGrain);
         const plc::Schedule schedule(threads);
         plc::Dynamics dynamics(mesh, schedule, simd, model);
         for (int i = 0; i < 5; ++i) step(mesh, dynamics, image);
