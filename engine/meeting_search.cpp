@@ -84,17 +84,18 @@ void MeetingSearch::sort_vertices(uint32_t slots) {
 }
 
 void MeetingSearch::list_faces(const Mesh& mesh, const Executor& executor) {
-  // Each face from the first of its corners that is listed.
+  // Each face from the first of its corners that is marked.
   const auto for_faces = [&](size_t begin, size_t end, const auto& vertex, const auto& face) {
     for (size_t i = begin; i < end; ++i) {
       const uint32_t v = vertices_[i];
       vertex(i);
+      if (!mesh.marked(v)) continue;
       const uint32_t count = mesh.rings.valence[v];
       uint32_t b = mesh.rings.slot(v, 0);
       for (uint32_t k = 0; k < count; ++k) {
         const uint32_t a = b;
         b = mesh.rings.slot(v, k + 1 == count ? 0 : k + 1);
-        if ((v < a || listed_[a] == 0) && (v < b || listed_[b] == 0)) face(v, a, b);
+        if ((v < a || !mesh.marked(a)) && (v < b || !mesh.marked(b))) face(v, a, b);
       }
     }
   };
@@ -135,12 +136,11 @@ void MeetingSearch::build_leaves(const Mesh& mesh, const Executor& executor) {
   Level& level = levels_[0];
   const size_t count = block_count(face_count(), kLanes);
   level.boxes.resize_uninitialized(count);
-  level.marked.resize_uninitialized(count);
   level.moved.resize_uninitialized(count);
   run_blocks(executor, count, kNodeBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t leaf = begin; leaf < end; ++leaf) {
       BoxLanes& boxes = level.boxes[leaf];
-      uint32_t marked = 0, moved = 0;
+      uint32_t moved = 0;
       const auto used =
           static_cast<uint32_t>(std::min<size_t>(kLanes, face_count() - leaf * kLanes));
       for (uint32_t k = 0; k < used; ++k) {
@@ -148,14 +148,11 @@ void MeetingSearch::build_leaves(const Mesh& mesh, const Executor& executor) {
         const FaceBox box = face_box(mesh.positions, abc);
         boxes.set(k,
                   {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}});
-        if (!mesh.marked(abc)) continue;
-        marked |= 1U << k;
         moved |= static_cast<uint32_t>(mesh.moved(abc)) << k;
       }
       for (uint32_t k = used; k < kLanes; ++k) {
         boxes.set(k, {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
       }
-      level.marked[leaf] = static_cast<uint8_t>(marked);
       level.moved[leaf] = static_cast<uint8_t>(moved);
     }
   });
@@ -168,30 +165,28 @@ void MeetingSearch::build_level(size_t index, const Executor& executor) {
   const Level& below = levels_[index - 1];
   const size_t children = below.boxes.size(), count = block_count(children, kLanes);
   level.boxes.resize_uninitialized(count);
-  level.marked.resize_uninitialized(count);
   level.moved.resize_uninitialized(count);
   run_blocks(executor, count, kNodeBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t node = begin; node < end; ++node) {
-      uint32_t marked = 0, moved = 0;
+      uint32_t moved = 0;
       for (uint32_t k = 0; k < kLanes; ++k) {
         const size_t child = node * kLanes + k;
         const bool used = child < children;
         level.boxes[node].set(k, used ? all_lanes(below.boxes[child])
                                       : Box3{{kInfinity, kInfinity, kInfinity},
                                              {-kInfinity, -kInfinity, -kInfinity}});
-        marked |= static_cast<uint32_t>(used && below.marked[child] != 0) << k;
         moved |= static_cast<uint32_t>(used && below.moved[child] != 0) << k;
       }
-      level.marked[node] = static_cast<uint8_t>(marked);
       level.moved[node] = static_cast<uint8_t>(moved);
     }
   });
 }
 
-uint32_t MeetingSearch::index_of(uint32_t a, uint32_t b, uint32_t c) const {
-  const auto before = [&](uint32_t x, uint32_t y) { return listed_[y] == 0 || x < y; };
-  // The first of those that are listed in front: a star's faces have one.
-  while (listed_[a] == 0 || !before(a, b) || !before(a, c)) {
+// Of a marked face.
+uint32_t MeetingSearch::index_of(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) const {
+  const auto before = [&](uint32_t x, uint32_t y) { return !mesh.marked(y) || x < y; };
+  // The first of its marked corners in front.
+  while (!mesh.marked(a) || !before(a, b) || !before(a, c)) {
     const uint32_t first = a;
     a = b;
     b = c;
@@ -204,7 +199,7 @@ uint32_t MeetingSearch::index_of(uint32_t a, uint32_t b, uint32_t c) const {
   return f;
 }
 
-// Marked faces around v, with the others around v.
+// Marked faces around v with each other.
 void MeetingSearch::search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) const {
   const uint32_t count = mesh.rings.valence[v];
   if (count == 0) return;
@@ -220,13 +215,14 @@ void MeetingSearch::search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) cons
   };
   for (uint32_t i = 0; i < count; ++i) {
     const auto f = corners(i);
-    const bool f_marked = mesh.marked(f.data()), f_moved = mesh.moved(f.data());
+    if (!mesh.marked(f.data())) continue;
+    const bool f_moved = mesh.moved(f.data());
     const Triangle t = make_triangle(mesh.positions, f.data());
     for (uint32_t j = i + 1; j < count; ++j) {
       const auto g = corners(j);
-      if ((f_marked || mesh.marked(g.data())) && (f_moved || mesh.moved(g.data())) &&
+      if (mesh.marked(g.data()) && (f_moved || mesh.moved(g.data())) &&
           triangles_intersect(t, make_triangle(mesh.positions, g.data()))) {
-        const uint32_t a = index_of(f[0], f[1], f[2]), b = index_of(g[0], g[1], g[2]);
+        const uint32_t a = index_of(mesh, f[0], f[1], f[2]), b = index_of(mesh, g[0], g[1], g[2]);
         pairs.emplace_back(std::min(a, b), std::max(a, b));
       }
     }
@@ -251,7 +247,8 @@ void MeetingSearch::find_near(uint32_t node, Vector<uint32_t>& near) const {
   while (depth != 0) {
     const Visit at = stack[--depth];
     const Level& level = levels_[at.level];
-    uint32_t hits = level.boxes[at.node].overlapping(box) & level.wanted(moved, at.node);
+    uint32_t hits = level.boxes[at.node].overlapping(box);
+    if (!moved) hits &= level.moved[at.node];
     // Children that lie before this node have found it themselves.
     const uint32_t own = node >> (3 * (at.level - 2));  // the child of this level that holds it
     if (own >= (at.node + 1) * kLanes) continue;
@@ -267,21 +264,20 @@ void MeetingSearch::find_near(uint32_t node, Vector<uint32_t>& near) const {
   }
 }
 
-// Marked faces of the leaves of one node with those of later leaves, or the same, that have no
-// common vertex.
+// Faces of the leaves of one node with those of later leaves, or the same, that have no common
+// vertex.
 void MeetingSearch::search_leaves(const Mesh& mesh, uint32_t node, Scratch& scratch,
                                   Pairs& pairs) const {
   const Level &leaves = levels_[0], &nodes = levels_[1];
-  if (nodes.marked[node] == 0) return;
   find_near(node, scratch.near);
   const size_t room = scratch.near.size() * kernels::kMostPairs;
   if (scratch.candidates.size() < room) scratch.candidates.resize_uninitialized(room);
-  const kernels::FaceBoxes tree{faces_.data(),       leaves.boxes.data(), leaves.marked.data(),
-                                leaves.moved.data(), nodes.boxes.data(),  nodes.marked.data(),
-                                nodes.moved.data()};
-  for (uint32_t marked = nodes.marked[node]; marked != 0; marked &= marked - 1) {
+  const kernels::FaceBoxes tree{faces_.data(), leaves.boxes.data(), leaves.moved.data(),
+                                nodes.boxes.data(), nodes.moved.data()};
+  const auto end = std::min<size_t>((size_t{node} + 1) * kLanes, leaves.boxes.size());
+  for (size_t leaf = size_t{node} * kLanes; leaf < end; ++leaf) {
     const size_t count =
-        kernels::face_pairs(simd_, tree, node * kLanes + lowest_bit(marked), scratch.near.data(),
+        kernels::face_pairs(simd_, tree, static_cast<uint32_t>(leaf), scratch.near.data(),
                             scratch.near.size(), scratch.candidates.data());
     for (size_t i = 0; i < count; ++i) {
       const auto [f, g] = scratch.candidates[i];

@@ -19,18 +19,17 @@ namespace plc {
 // where that leaves a doubt. For all others there is a tree of boxes, 8 children to a node, over
 // the faces in the order of ids: vertices are numbered along a space-filling curve, so nothing has
 // to be sorted and boxes are tight; with any other numbering results are the same and searches
-// slow. Only the faces around marked vertices and their neighbours are listed.
+// slow. Only the faces around marked vertices are listed.
 //
 //   buffer    bytes per listed face   what
-//   vertices  2                       marked vertices and their neighbours
-//   faces     12                      three ids, the first listed vertex in front, in its order
-//   begin     2                       per listed vertex: its first face
+//   faces     12                      three ids, the first marked vertex in front, in its order
 //   boxes     27.4                    per node: boxes of 8 faces or nodes, lane by lane
-//   marked    0.15                    per node: in which of the 8 a face is marked
-//   moved     0.15                    per node: in which of the 8 a marked face has moved
+//   moved     0.15                    per node: in which of the 8 a face has moved
+//   vertices  4 per vertex            marked vertices and their neighbours
+//   begin     4 per vertex            of those: the first face
 //
-// and a byte per vertex that tells the listed ones. Buffers are kept from call to call. Not
-// thread-safe: one search at a time.
+// and a byte per vertex of the mesh that tells the listed ones. Buffers are kept from call to call.
+// Not thread-safe: one search at a time.
 class MeetingSearch {
  public:
   explicit MeetingSearch(SimdTarget simd = best_simd_target()) : simd_(simd) {}
@@ -39,9 +38,8 @@ class MeetingSearch {
   // id, not 0 where the vertex may have part in a meeting; NULL: all may. before: where the
   // vertices were when no two faces met; NULL: all have moved. Returns the pairs (f, g), f < g, of
   // faces that meet elsewhere than in what they share (triangle_intersection.h: exact, faces of
-  // zero area left out), both have a marked vertex - one of them, where they share a vertex -, and
-  // one has a vertex that has moved; sorted, until the next call. The same for any executor. The
-  // mesh is closed and a manifold.
+  // zero area left out), both have a marked vertex, and one has a vertex that has moved; sorted,
+  // until the next call. The same for any executor. The mesh is closed and a manifold.
   const Vector<FacePair>& find(const RingView& rings, uint32_t slots, const Packed* positions,
                                const uint8_t* marked, const Executor& executor,
                                const Packed* before = nullptr);
@@ -55,12 +53,7 @@ class MeetingSearch {
   // Level 0: leaves, nodes of faces; level k: nodes of nodes of level k - 1. Two levels at least.
   struct Level {
     Buffer<BoxLanes> boxes;
-    // A bit per child: some face in it is marked; some marked face in it has moved.
-    Buffer<uint8_t> marked, moved;
-    // Of a node: what a face that has moved, or has not, is to be tested against.
-    uint32_t wanted(bool has_moved, size_t node) const {
-      return has_moved ? marked[node] : moved[node];
-    }
+    Buffer<uint8_t> moved;  // a bit per child: some face in it has
   };
   struct Mesh {
     RingView rings;
@@ -95,7 +88,7 @@ class MeetingSearch {
   };
   void find_near(uint32_t node, Vector<uint32_t>& near) const;
   void search_leaves(const Mesh& mesh, uint32_t node, Scratch& scratch, Pairs& pairs) const;
-  uint32_t index_of(uint32_t a, uint32_t b, uint32_t c) const;
+  uint32_t index_of(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) const;
 
   SimdTarget simd_;
   Buffer<uint32_t> vertices_;  // ascending

@@ -100,16 +100,29 @@ void Sleep::find_rim() {
   touched_.assign(asleep_.size(), 0);
   const RingView rings = mesh_.rings();
   run_blocks(executor_, awake_.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {
-    // Several tasks may write the same 1.
+    // Several tasks may write the same 1. Only where there is none yet: each write takes the cache
+    // line from the other threads.
     const auto touch = [&](uint32_t block) {
-      std::atomic_ref<uint8_t>(touched_[block]).store(1, std::memory_order_relaxed);
+      const std::atomic_ref<uint8_t> touched(touched_[block]);
+      if (touched.load(std::memory_order_relaxed) == 0) touched.store(1, std::memory_order_relaxed);
     };
     for (size_t i = begin; i < end; ++i) {
       touch(awake_[i]);
       const uint32_t first = awake_[i] * kRingLanes;
+      const uint16_t most =
+          *std::max_element(rings.valence + first, rings.valence + first + kRingLanes);
+      for (uint32_t k = 0; k < std::min<uint32_t>(most, kRingSlots); ++k) {
+        // Slots past the valence hold the vertex itself.
+        const uint32_t* column =
+            rings.columns + (size_t{awake_[i]} * kRingColumns + k) * kRingLanes;
+        uint32_t block[kRingLanes];
+        for (uint32_t lane = 0; lane < kRingLanes; ++lane) block[lane] = column[lane] / kRingLanes;
+        for (uint32_t lane = 0; lane < kRingLanes; ++lane) touch(block[lane]);
+      }
+      if (most <= kRingSlots) continue;
       for (uint32_t v = first; v < first + kRingLanes; ++v) {
-        const uint32_t d = rings.valence[v];
-        for (uint32_t k = 0; k < d; ++k) touch(rings.slot(v, k) / kRingLanes);
+        for (uint32_t k = kRingSlots; k < rings.valence[v]; ++k)
+          touch(rings.slot(v, k) / kRingLanes);
       }
     }
   });

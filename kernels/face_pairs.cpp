@@ -85,18 +85,17 @@ HWY_INLINE uint32_t lowest_bit(uint32_t bits) {
 // Of `leaf` with a later leaf, or itself, whose box is other_box.
 HWY_INLINE size_t pairs_of_leaves(const FaceBoxes& tree, uint32_t leaf, const Box3& other_box,
                                   uint32_t other, CandidatePair* pairs) {
-  const uint32_t wanted =
-      tree.leaf_moved[other] != 0 ? tree.leaf_marked[leaf] : tree.leaf_moved[leaf];
-  uint32_t near = overlapping(tree.leaves[leaf], other_box) & wanted;
-  if (near == 0) return 0;
   const uint32_t moved = tree.leaf_moved[leaf];
+  uint32_t near = overlapping(tree.leaves[leaf], other_box);
+  if (tree.leaf_moved[other] == 0) near &= moved;
+  if (near == 0) return 0;
   const LeafCorners corners(tree.corners + size_t{3} * other * BoxLanes::kLanes);
   size_t found = 0;
   for (; near != 0; near &= near - 1) {
     const uint32_t k = lowest_bit(near), f = leaf * BoxLanes::kLanes + k;
     uint32_t hits = overlapping(tree.leaves[other], tree.leaves[leaf].at(k)) &
-                    ~corners.sharing(tree.corners + size_t{3} * f) &
-                    ((moved >> k & 1) != 0 ? tree.leaf_marked[other] : tree.leaf_moved[other]);
+                    ~corners.sharing(tree.corners + size_t{3} * f);
+    if ((moved >> k & 1) == 0) hits &= tree.leaf_moved[other];
     if (other == leaf) hits &= ~((2U << k) - 1);
     for (; hits != 0; hits &= hits - 1) {
       pairs[found++] = {f, other * BoxLanes::kLanes + lowest_bit(hits)};
@@ -114,8 +113,8 @@ size_t face_pairs(const FaceBoxes& tree, uint32_t leaf, const uint32_t* nodes, s
   for (size_t n = 0; n < count; ++n) {
     const uint32_t node = nodes[n];
     if (node < own) continue;
-    uint32_t hits = overlapping(tree.nodes[node], box) &
-                    (moved ? tree.node_marked[node] : tree.node_moved[node]);
+    uint32_t hits = overlapping(tree.nodes[node], box);
+    if (!moved) hits &= tree.node_moved[node];
     if (node == own) hits &= ~((1U << lane) - 1);
     for (; hits != 0; hits &= hits - 1) {
       const uint32_t k = lowest_bit(hits);

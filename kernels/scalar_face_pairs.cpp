@@ -16,10 +16,8 @@ size_t pairs_of_leaves(const FaceBoxes& tree, uint32_t leaf, uint32_t other, Can
   constexpr uint32_t kLanes = BoxLanes::kLanes;
   size_t found = 0;
   for (uint32_t k = 0; k < kLanes; ++k) {
-    if ((tree.leaf_marked[leaf] >> k & 1) == 0) continue;
-    const bool moved = (tree.leaf_moved[leaf] >> k & 1) != 0;
-    const uint32_t wanted = moved ? tree.leaf_marked[other] : tree.leaf_moved[other];
-    const uint32_t hits = wanted & tree.leaves[other].overlapping(tree.leaves[leaf].at(k));
+    uint32_t hits = tree.leaves[other].overlapping(tree.leaves[leaf].at(k));
+    if ((tree.leaf_moved[leaf] >> k & 1) == 0) hits &= tree.leaf_moved[other];
     const uint32_t f = leaf * kLanes + k;
     for (uint32_t l = other == leaf ? k + 1 : 0; l < kLanes; ++l) {
       const uint32_t g = other * kLanes + l;
@@ -42,8 +40,8 @@ size_t face_pairs(const FaceBoxes& tree, uint32_t leaf, const uint32_t* nodes, s
   size_t found = 0;
   for (size_t n = 0; n < count; ++n) {
     const uint32_t node = nodes[n];
-    const uint32_t wanted = moved ? tree.node_marked[node] : tree.node_moved[node];
-    const uint32_t hits = wanted & tree.nodes[node].overlapping(box);
+    uint32_t hits = tree.nodes[node].overlapping(box);
+    if (!moved) hits &= tree.node_moved[node];
     for (uint32_t k = 0; k < kLanes; ++k) {
       const uint32_t other = node * kLanes + k;
       if ((hits >> k & 1) != 0 && other >= leaf) {

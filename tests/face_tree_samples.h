@@ -17,12 +17,12 @@ struct FaceTreeSample {
   uint32_t faces;
   std::vector<Box3> box;
   std::vector<uint32_t> corners;
-  std::vector<bool> marked, moved;
+  std::vector<bool> present, moved;
   std::vector<BoxLanes> leaves, nodes;
-  std::vector<uint8_t> leaf_marked, leaf_moved, node_marked, node_moved;
+  std::vector<uint8_t> leaf_moved, node_moved;
 
-  FaceTreeSample(uint32_t count, uint32_t seed, uint32_t percent_marked, uint32_t percent_moved)
-      : faces(count), box(count), marked(count), moved(count) {
+  FaceTreeSample(uint32_t count, uint32_t seed, uint32_t percent_present, uint32_t percent_moved)
+      : faces(count), box(count), present(count), moved(count) {
     std::mt19937 bits(seed);
     const auto part = [&](uint32_t percent) { return bits() % 100 < percent; };
     // Steps of 1/8, so that boxes touch now and then.
@@ -33,16 +33,16 @@ struct FaceTreeSample {
         box[f].high[axis] = box[f].low[axis] + step(20);
       }
       for (uint32_t k = 0; k < 3; ++k) corners.push_back(f / 2 + k + bits() % 2);
-      marked[f] = part(percent_marked);
-      moved[f] = marked[f] && part(percent_moved);
+      present[f] = part(percent_present);
+      moved[f] = present[f] && part(percent_moved);
+      if (!present[f]) box[f] = kNothing;
     }
     build();
   }
   uint32_t leaf_count() const { return static_cast<uint32_t>(leaves.size()); }
   uint32_t node_count() const { return static_cast<uint32_t>(nodes.size()); }
   plc::kernels::FaceBoxes view() const {
-    return {corners.data(), leaves.data(),      leaf_marked.data(), leaf_moved.data(),
-            nodes.data(),   node_marked.data(), node_moved.data()};
+    return {corners.data(), leaves.data(), leaf_moved.data(), nodes.data(), node_moved.data()};
   }
 
  private:
@@ -62,30 +62,26 @@ struct FaceTreeSample {
     return all;
   }
   // One level: boxes and flags of `count` children.
-  template <typename BoxOf, typename Marked, typename Moved>
-  static void level(uint32_t count, const BoxOf& box_of, const Marked& is_marked,
-                    const Moved& has_moved, std::vector<BoxLanes>& boxes,
-                    std::vector<uint8_t>& marks, std::vector<uint8_t>& moves) {
+  template <typename BoxOf, typename Moved>
+  static void level(uint32_t count, const BoxOf& box_of, const Moved& has_moved,
+                    std::vector<BoxLanes>& boxes, std::vector<uint8_t>& moves) {
     const uint32_t records = (count + kLanes - 1) / kLanes;
     boxes.resize(records);
-    marks.assign(records, 0);
     moves.assign(records, 0);
     for (uint32_t i = 0; i < records * kLanes; ++i) {
       const uint32_t record = i / kLanes, lane = i % kLanes;
       boxes[record].set(lane, i < count ? box_of(i) : kNothing);
       if (i >= count) continue;
-      marks[record] |= static_cast<uint8_t>((is_marked(i) ? 1U : 0U) << lane);
       moves[record] |= static_cast<uint8_t>((has_moved(i) ? 1U : 0U) << lane);
     }
   }
   void build() {
     level(
-        faces, [&](uint32_t f) { return box[f]; }, [&](uint32_t f) { return marked[f]; },
-        [&](uint32_t f) { return moved[f]; }, leaves, leaf_marked, leaf_moved);
+        faces, [&](uint32_t f) { return box[f]; }, [&](uint32_t f) { return moved[f]; }, leaves,
+        leaf_moved);
     level(
         leaf_count(), [&](uint32_t l) { return around(leaves[l]); },
-        [&](uint32_t l) { return leaf_marked[l] != 0; },
-        [&](uint32_t l) { return leaf_moved[l] != 0; }, nodes, node_marked, node_moved);
+        [&](uint32_t l) { return leaf_moved[l] != 0; }, nodes, node_moved);
     corners.resize(size_t{3} * kLanes * leaf_count());
   }
 };

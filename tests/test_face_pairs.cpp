@@ -47,7 +47,7 @@ Pairs expected(const FaceTreeSample& tree) {
       const uint32_t* of_g = &tree.corners[size_t{3} * g];
       const bool share =
           std::any_of(of_g, of_g + 3, [&](uint32_t v) { return of_f.count(v) != 0; });
-      if (tree.marked[f] && tree.marked[g] && (tree.moved[f] || tree.moved[g]) && !share &&
+      if (tree.present[f] && tree.present[g] && (tree.moved[f] || tree.moved[g]) && !share &&
           overlap(tree.box[f], tree.box[g])) {
         all.emplace_back(f, g);
       }
@@ -58,12 +58,12 @@ Pairs expected(const FaceTreeSample& tree) {
 
 }  // namespace
 
-TEST_CASE("pairs of faces: marked, one moved, without a common corner, boxes overlapping",
+TEST_CASE("pairs of faces: present, one moved, without a common corner, boxes overlapping",
           "[kernels]") {
   for (const uint32_t faces : {1U, 8U, 9U, 63U, 64U, 65U, 200U, 611U}) {
-    for (const auto& [marked, moved] :
+    for (const auto& [present, moved] :
          {std::pair{100U, 100U}, std::pair{60U, 30U}, std::pair{100U, 5U}, std::pair{20U, 0U}}) {
-      const FaceTreeSample tree(faces, faces + marked, marked, moved);
+      const FaceTreeSample tree(faces, faces + present, present, moved);
       const Pairs wanted = expected(tree);
       if (faces > 100 && moved > 0) CHECK(wanted.size() > 3);
       const Pairs twin = found(SimdTarget::kScalar, tree);
@@ -71,7 +71,7 @@ TEST_CASE("pairs of faces: marked, one moved, without a common corner, boxes ove
       std::sort(sorted.begin(), sorted.end());
       CHECK(sorted == wanted);
       for (const SimdTarget simd : plc::available_simd_targets()) {
-        CAPTURE(faces, marked, moved, plc::simd_target_name(simd));
+        CAPTURE(faces, present, moved, plc::simd_target_name(simd));
         CHECK(found(simd, tree) == twin);
       }
     }
