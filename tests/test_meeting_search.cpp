@@ -161,6 +161,16 @@ TEST_CASE("where nothing is marked nothing is listed or found", "[meeting_search
   CHECK(search.face_count() == 0);
 }
 
+TEST_CASE("the faces around marked vertices are listed, and no others", "[meeting_search]") {
+  const samples::Rings r = samples::rings_of(samples::torus(60, 30, 2, 0.7));
+  plc::Vector<uint8_t> marked(r.slots(), 0);
+  marked[5] = marked[900] = 1;
+  plc::MeetingSearch search;
+  search.find(r.view(), r.slots(), r.positions.data(), marked.data(), plc::SerialExecutor());
+  CHECK(search.face_count() == r.valence[5] + r.valence[900]);
+  for (uint32_t f = 0; f < search.face_count(); ++f) CHECK(marked[search.face(f)[0]] != 0);
+}
+
 TEST_CASE("deleted vertices and an empty mesh are no obstacle", "[meeting_search]") {
   plc::MeetingSearch search;
   samples::Rings none;
