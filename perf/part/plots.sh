@@ -89,7 +89,7 @@ set xrange [*:*]
 set logscale x; set xtics auto; set format x '10^{%L}'
 set xlabel 'vertices'
 set title 'ns per vertex and iteration, one thread'
-set key top left
+set key bottom right
 plot '$data/growth' using 1:2:3:4 with yerrorbars lt 1 pt 7 notitle, '' using 1:2 with lines lt 1 title 'all', \
   '' using 1:5 with linespoints lt 2 pt 5 title 'topology', '' using 1:6 with linespoints lt 3 pt 9 title 'dynamics'
 set title 'bytes per vertex'
