@@ -98,7 +98,8 @@ size_t Dynamics::tasks() const {
 
 Blocks Dynamics::task(size_t index) const {
   const size_t begin = index * kTaskBlocks;
-  return {blocks_.data() + begin, std::min(kTaskBlocks, blocks_.size() - begin)};
+  const size_t end = std::min(begin + kTaskBlocks, blocks_.size());
+  return Blocks::of(blocks_.data(), blocks_.size(), begin, end);
 }
 
 void Dynamics::for_tasks(const std::function<void(size_t, const Blocks&)>& body) const {

@@ -313,10 +313,10 @@ const Vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t slot
         search_star(mesh, vertices_[i], pairs);
       }
     } else {
-      Scratch scratch;
+      const Spares<Scratch>::Lent scratch = scratches_.lend();
       const size_t begin = (task - vertex_tasks) * kSearchBlock;
       for (size_t node = begin; node < std::min(nodes, begin + kSearchBlock); ++node) {
-        search_leaves(mesh, static_cast<uint32_t>(node), scratch, pairs);
+        search_leaves(mesh, static_cast<uint32_t>(node), *scratch, pairs);
       }
     }
   });

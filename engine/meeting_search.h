@@ -5,6 +5,7 @@
 
 #include "engine/four.h"
 #include "engine/self_intersection.h"
+#include "engine/spares.h"
 #include "kernels/box_lanes.h"
 #include "kernels/face_pairs.h"
 #include "kernels/ring.h"
@@ -91,6 +92,7 @@ class MeetingSearch {
   uint32_t index_of(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) const;
 
   SimdTarget simd_;
+  Spares<Scratch> scratches_;
   Buffer<uint32_t> vertices_;  // ascending
   Buffer<uint8_t> listed_;     // per vertex
   size_t face_count_ = 0;

@@ -11,7 +11,7 @@ void MotionGuard::find_folds(const Vector<uint32_t>& blocks) {
   folds_.resize_uninitialized(mesh_.padded());
   const Streams3& n = mesh_.normal;
   run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {
-    const Blocks part{blocks.data() + begin, end - begin};
+    const Blocks part = Blocks::of(blocks.data(), blocks.size(), begin, end);
     kernels::turned_faces(simd_, mesh_.rings(), mesh_.packed.data(), part, n.x.data(), n.y.data(),
                           n.z.data(), kRiskDot, folds_.data());
     for (size_t i = 0; i < part.count; ++i) {

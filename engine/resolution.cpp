@@ -159,12 +159,9 @@ void Resolution::queue_violated_edges() {
     blocks_.erase(std::unique(blocks_.begin(), blocks_.end()), blocks_.end());
   }
   run_blocks(executor_, blocks_.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const uint32_t v = blocks_[i] * kRingLanes;
-      kernels::edge_violations(simd_, mesh_.rings(), mesh_.packed.data(), delta * delta,
-                               kMaxEdge * kMaxEdge * delta * delta, v, v + kRingLanes,
-                               flags_.data());
-    }
+    kernels::edge_violations(simd_, mesh_.rings(), mesh_.packed.data(), delta * delta,
+                             kMaxEdge * kMaxEdge * delta * delta,
+                             Blocks::of(blocks_.data(), blocks_.size(), begin, end), flags_.data());
   });
   for (const auto* queue : {&due_.list(), &std::as_const(pair_queue_)}) {
     for (const uint32_t v : *queue) {

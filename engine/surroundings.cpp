@@ -62,7 +62,8 @@ void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash, 
     Task& task = tasks_[index];
     task.too_near.clear();
     task.at_risk.clear();
-    Scratch scratch;
+    const Spares<Scratch>::Lent lent = scratches_.lend();
+    Scratch& scratch = *lent;
     for (size_t i = begin; i < end;) {
       Vec3 low, high;
       const size_t count = group_size(due.data() + i, end - i, low, high);

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "engine/mesh.h"
+#include "engine/spares.h"
 #include "engine/spatial_hash.h"
 #include "kernels/simd.h"
 #include "pyramid/executor.h"
@@ -69,6 +70,7 @@ class Surroundings {
   const Executor& executor_;
   SimdTarget simd_;
   Vector<Task> tasks_;
+  Spares<Scratch> scratches_;
   Vector<VertexPair> too_near_;
   Vector<uint32_t> at_risk_;
 };

@@ -83,14 +83,17 @@ HWY_INLINE void prefetch_block(const SurfaceForces& f, const Rk4Streams& s, uint
 template <int kStage, class Visit>
 HWY_INLINE void visit_blocks(const SurfaceForces& f, const Rk4Streams& s, const Blocks& blocks,
                              const Visit& visit) {
-  constexpr size_t kChunk = 8;
+  constexpr size_t kChunk = 64;         // less than kAhead: their positions have come
+  constexpr size_t kVoxelsAhead = 16;  // blocks
   alignas(64) float values[kChunk * kRingLanes];
   for (size_t first = 0; first < blocks.count; first += kChunk) {
     const size_t end = HWY_MIN(first + kChunk, blocks.count);
     with_voxel_type(f.image.form.type, [&](auto voxel) HWY_ATTR {
       using Voxel = decltype(voxel);
       for (size_t b = first; b < end; ++b) {
-        if (b + 1 < blocks.count) prefetch_voxels<Voxel>(f, blocks.begin(b + 1));
+        if (blocks.fetches(b + kVoxelsAhead)) {
+          prefetch_voxels<Voxel>(f, blocks.begin(b + kVoxelsAhead));
+        }
         const uint32_t begin = blocks.begin(b);
         for (uint32_t i = 0; i < kRingLanes; i += kLanes) {
           hn::Store(sample<Voxel>(f.image, load_packed(f.position + begin + i)), FloatTag(),
@@ -99,7 +102,7 @@ HWY_INLINE void visit_blocks(const SurfaceForces& f, const Rk4Streams& s, const 
       }
     });
     for (size_t b = first; b < end; ++b) {
-      if (b + kAhead < blocks.count) prefetch_block<kStage>(f, s, blocks.begin(b + kAhead));
+      if (blocks.fetches(b + kAhead)) prefetch_block<kStage>(f, s, blocks.begin(b + kAhead));
       visit(blocks.begin(b), values + (b - first) * kRingLanes);
     }
   }

@@ -31,7 +31,7 @@ template <class Visit>
 HWY_INLINE void for_lanes(const RingView& ring, const Packed* position, const Blocks& blocks,
                           const Visit& visit) {
   for (size_t b = 0; b < blocks.count; ++b) {
-    if (b + kAhead < blocks.count) {
+    if (blocks.fetches(b + kAhead)) {
       prefetch_ring(ring, blocks.begin(b + kAhead));
       prefetch_records(position, blocks.begin(b + kAhead));
     }
@@ -205,11 +205,11 @@ struct EdgeLimits {
 };
 
 void edge_violations(const RingView& ring, const Packed* position, float min_squared,
-                     float max_squared, uint32_t begin, uint32_t end, uint8_t* flags) {
+                     float max_squared, const Blocks& blocks, uint8_t* flags) {
   const FloatTag d;
   const hn::RebindToSigned<FloatTag> d32;
   const hn::Rebind<uint8_t, FloatTag> d8;
-  for (uint32_t v = begin; v < end; v += kLanes) {
+  for_lanes(ring, position, blocks, [&](uint32_t v) HWY_ATTR {
     const Floats valence = load_valence(ring, v);
     EdgeLimits walk{load_packed(position + v), hn::Set(d, min_squared), hn::Set(d, max_squared)};
     walk_ring(ring, position, v, valence, walk);
@@ -217,12 +217,12 @@ void edge_violations(const RingView& ring, const Packed* position, float min_squ
         hn::Or(hn::IfThenElseZero(hn::RebindMask(d32, walk.too_short), hn::Set(d32, 1)),
                hn::IfThenElseZero(hn::RebindMask(d32, walk.too_long), hn::Set(d32, 2)));
     hn::StoreU(hn::DemoteTo(d8, bits), d8, flags + v);
-    if (HWY_LIKELY(!has_tails(valence))) continue;
+    if (HWY_LIKELY(!has_tails(valence))) return;
     for (uint32_t u = v; u < v + kLanes; ++u) {
       if (ring.valence[u] <= kRingSlots) continue;
       flags[u] = scalar::violation_flags(ring, position, min_squared, max_squared, u);
     }
-  }
+  });
 }
 
 struct TurnedFaces {
@@ -357,10 +357,8 @@ void metric_normals(SimdTarget simd, const Metric& metric, const float* nx, cons
 }
 
 void edge_violations(SimdTarget simd, const RingView& ring, const Packed* position,
-                     float min_squared, float max_squared, uint32_t begin, uint32_t end,
-                     uint8_t* flags) {
-  PLC_DISPATCH(simd, edge_violations)
-  (ring, position, min_squared, max_squared, begin, end, flags);
+                     float min_squared, float max_squared, const Blocks& blocks, uint8_t* flags) {
+  PLC_DISPATCH(simd, edge_violations)(ring, position, min_squared, max_squared, blocks, flags);
 }
 
 void turned_faces(SimdTarget simd, const RingView& ring, const Packed* position,

@@ -48,8 +48,7 @@ void metric_normals(SimdTarget simd, const Metric& metric, const float* nx, cons
 // flags[v]: bit 0 when some edge of v is not longer than sqrt(min_squared) (constraint (1)), bit 1
 // when some edge is not shorter than sqrt(max_squared) (constraint (2)).
 void edge_violations(SimdTarget simd, const RingView& ring, const Packed* position,
-                     float min_squared, float max_squared, uint32_t begin, uint32_t end,
-                     uint8_t* flags);
+                     float min_squared, float max_squared, const Blocks& blocks, uint8_t* flags);
 
 // flags[v]: 1 when a face around v is turned against the unit normal n of v: with its area vector
 // a (the cross product of successive ring edges) a . n <= 0 or (a . n)^2 <= most^2 |a|^2; else 0.

@@ -64,7 +64,7 @@ void metric_normals(const Metric& metric, const float* nx, const float* ny, cons
 void turned_faces(const RingView& ring, const Packed* position, const Blocks& blocks,
                   const float* nx, const float* ny, const float* nz, float most, uint8_t* flags);
 void edge_violations(const RingView& ring, const Packed* position, float min_squared,
-                     float max_squared, uint32_t begin, uint32_t end, uint8_t* flags);
+                     float max_squared, const Blocks& blocks, uint8_t* flags);
 double edge_length_sum(const RingView& ring, const Packed* position, const Metric& metric,
                        uint32_t begin, uint32_t end);
 

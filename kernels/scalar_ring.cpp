@@ -192,10 +192,10 @@ void turned_faces(const RingView& ring, const Packed* position, const Blocks& bl
 }
 
 void edge_violations(const RingView& ring, const Packed* position, float min_squared,
-                     float max_squared, uint32_t begin, uint32_t end, uint8_t* flags) {
-  for (uint32_t v = begin; v < end; ++v) {
+                     float max_squared, const Blocks& blocks, uint8_t* flags) {
+  for_vertices(blocks, [&](uint32_t v) {
     flags[v] = violation_flags(ring, position, min_squared, max_squared, v);
-  }
+  });
 }
 
 double edge_length_sum(const RingView& ring, const Packed* position, const Metric& metric,

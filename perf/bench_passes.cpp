@@ -15,6 +15,7 @@
 #include <numeric>
 #include <thread>
 
+#include "engine/blocks.h"
 #include "engine/evolution.h"
 #include "engine/missed_places.h"
 #include "engine/refinement.h"
@@ -145,13 +146,13 @@ void add_edges(Suite& suite, const Mesh& start) {
     auto flags = std::make_shared<plc::Buffer<uint8_t>>(b.mesh.padded());
     const auto measured = [&b, flags] {
       const auto delta = static_cast<float>(b.mesh.delta);
-      const uint32_t n = b.mesh.padded();
+      const size_t blocks = b.mesh.padded() / plc::kRingLanes;
       return timed([&] {
-        b.schedule.run((n + plc::kGrain - 1) / plc::kGrain, [&](size_t block) {
-          const auto begin = static_cast<uint32_t>(block) * plc::kGrain;
+        plc::run_blocks(b.schedule, blocks, plc::kTaskBlocks, [&](size_t, size_t begin, size_t end) {
+          const plc::Blocks part{nullptr, end - begin, static_cast<uint32_t>(begin), blocks - end};
           plc::kernels::edge_violations(kSimd, b.mesh.rings(), b.mesh.packed.data(), delta * delta,
-                                        plc::kMaxEdge * plc::kMaxEdge * delta * delta, begin,
-                                        std::min(begin + plc::kGrain, n), flags->data());
+                                        plc::kMaxEdge * plc::kMaxEdge * delta * delta, part,
+                                        flags->data());
         });
       });
     };

@@ -93,7 +93,7 @@ inline uint64_t metric_normals(SimdTarget simd) {
 inline uint64_t edge_violations(SimdTarget simd) {
   const Rings r;
   plc::Vector<uint8_t> flags(r.n);
-  kernels::edge_violations(simd, r.view, r.position, 400, 60000, 0, r.n, flags.data());
+  kernels::edge_violations(simd, r.view, r.position, 400, 60000, r.all, flags.data());
   Fnv hash;
   hash.add_all(flags);
   return hash.value();

@@ -254,8 +254,8 @@ TEST_CASE("an edge as long as a limit violates it", "[kernels]") {
   for (const uint32_t u : rings.rings[0]) rings.position[u] = {3, 4, 0, 0};
   const auto flags_at_0 = [&](SimdTarget simd, float min_squared, float max_squared) {
     plc::Vector<uint8_t> flags(rings.count(), 9);
-    kernels::edge_violations(simd, rings.view(), rings.position.data(), min_squared, max_squared, 0,
-                             16, flags.data());
+    kernels::edge_violations(simd, rings.view(), rings.position.data(), min_squared, max_squared,
+                             plc::Blocks::range(0, 16), flags.data());
     return static_cast<int>(flags[0]);
   };
   for (const SimdTarget simd : plc::available_simd_targets()) {
@@ -279,7 +279,7 @@ TEST_CASE("edge violations are found in columns and tails alike", "[kernels]") {
       CAPTURE(plc::simd_target_name(simd), begin, end);
       plc::Vector<uint8_t> flags(rings.count(), 9);
       kernels::edge_violations(simd, rings.view(), rings.position.data(), min_squared, max_squared,
-                               begin, end, flags.data());
+                               plc::Blocks::range(begin, end), flags.data());
       for (uint32_t v = 0; v < rings.count(); ++v) {
         CAPTURE(v);
         int expected = 0, columns_only = 0;
