@@ -31,7 +31,7 @@ template <class Visit>
 HWY_INLINE void for_lanes(const RingView& ring, const Packed* position, const Blocks& blocks,
                           const Visit& visit) {
   for (size_t b = 0; b < blocks.count; ++b) {
-    if (blocks.fetches(b + kAhead)) {
+    if (blocks.comes(b + kAhead)) {
       prefetch_ring(ring, blocks.begin(b + kAhead));
       prefetch_records(position, blocks.begin(b + kAhead));
     }

@@ -146,15 +146,14 @@ void add_edges(Suite& suite, const Mesh& start) {
     auto flags = std::make_shared<plc::Buffer<uint8_t>>(b.mesh.padded());
     const auto measured = [&b, flags] {
       const auto delta = static_cast<float>(b.mesh.delta);
-      const size_t blocks = b.mesh.padded() / plc::kRingLanes;
-      return timed([&] {
-        plc::run_blocks(b.schedule, blocks, plc::kTaskBlocks, [&](size_t, size_t begin, size_t end) {
-          const plc::Blocks part{nullptr, end - begin, static_cast<uint32_t>(begin), blocks - end};
-          plc::kernels::edge_violations(kSimd, b.mesh.rings(), b.mesh.packed.data(), delta * delta,
-                                        plc::kMaxEdge * plc::kMaxEdge * delta * delta, part,
-                                        flags->data());
-        });
-      });
+      const float least = delta * delta, most = plc::kMaxEdge * plc::kMaxEdge * least;
+      const size_t count = b.mesh.padded() / plc::kRingLanes;
+      const auto look = [&](size_t, size_t begin, size_t end) {
+        const plc::Blocks part{nullptr, end - begin, static_cast<uint32_t>(begin), count - end};
+        plc::kernels::edge_violations(kSimd, b.mesh.rings(), b.mesh.packed.data(), least, most,
+                                      part, flags->data());
+      };
+      return timed([&] { plc::run_blocks(b.schedule, count, plc::kTaskBlocks, look); });
     };
     return Suite::Case{[] {}, measured,
                        [flags] { return bench::hash_bytes(flags->data(), flags->size()); }};

@@ -21,7 +21,7 @@ namespace scalar = plc::kernels::scalar;
 
 constexpr kernels::Rk4Coefficients kNewton{1.0F / 0.7F, 0.45F, 0.9F};
 constexpr kernels::MoveBound kBound{2.5F, 3.5F};
-constexpr uint32_t kBlocks = 24;
+constexpr uint32_t kBlocks = 240;  // more than kernels fetch ahead
 
 // A stage of a step in full swing.
 struct Stage {
@@ -121,7 +121,7 @@ TEST_CASE("a guided move is the last stage and the move, and writes no rates", "
 }
 
 TEST_CASE("listed blocks move alike, and no others", "[kernels]") {
-  const plc::Vector<uint32_t> list = {0, 1, 5, 6, 7, 23};
+  const plc::Vector<uint32_t> list = {0, 1, 5, 6, 7, 23, 239};
   const Blocks blocks{list.data(), list.size()};
   Stage whole;
   scalar::guided_stage(1, kNewton, whole.forces(), whole.rk4(), whole.all());
@@ -137,5 +137,28 @@ TEST_CASE("listed blocks move alike, and no others", "[kernels]") {
       REQUIRE(got.streams[6][v] == from.streams[6][v]);
       REQUIRE(got.rate(2)[v] == from.rate(2)[v]);
     }
+  }
+}
+
+TEST_CASE("tasks of a list move their own blocks only, and together all of it", "[kernels]") {
+  plc::Vector<uint32_t> list;
+  for (uint32_t block = 0; block < kBlocks; block += block % 3 + 1) list.push_back(block);
+  Stage whole;
+  scalar::guided_stage(1, kNewton, whole.forces(), whole.rk4(), {list.data(), list.size()});
+  const size_t middle = list.size() / 3;
+  const Stage before;
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    CAPTURE(plc::simd_target_name(simd));
+    Stage got;
+    const auto run = [&](size_t begin, size_t end) {
+      kernels::guided_stage(simd, 1, kNewton, got.forces(), got.rk4(),
+                            Blocks::of(list.data(), list.size(), begin, end));
+    };
+    run(middle, list.size());
+    const uint32_t first = list[middle] * plc::kRingLanes;
+    CHECK(got.next[first].x == whole.next[first].x);
+    for (uint32_t v = 0; v < first; ++v) REQUIRE(got.next[v].x == before.next[v].x);
+    run(0, middle);
+    CHECK(first_difference(got.result(), whole.result()) == -1);
   }
 }
