@@ -295,10 +295,10 @@ int main(int argc, char** argv) {
   add_ring_kernels(table);
   add_motion_kernels(table);
   for (const SimdTarget simd : plc::available_simd_targets()) {
-    for (const auto& [name, kernel] : table) {
-      const std::string full = name + "/" + std::string(plc::simd_target_name(simd));
-      benchmark::RegisterBenchmark(full.c_str(), [&, simd](benchmark::State& state) {
-        time_kernel(state, name, kernel, simd);
+    for (const auto& entry : table) {
+      const std::string full = entry.first + "/" + std::string(plc::simd_target_name(simd));
+      benchmark::RegisterBenchmark(full.c_str(), [&entry, simd](benchmark::State& state) {
+        time_kernel(state, entry.first, entry.second, simd);
       })->Unit(benchmark::kMillisecond);
     }
     plc::Model springs;
