@@ -1,5 +1,7 @@
 #include "engine/annular.h"
 
+#include <cassert>
+
 namespace plc {
 
 namespace {
@@ -7,6 +9,7 @@ namespace {
 // The neighbours of v strictly between `from` and `to`, counter-clockwise.
 Neighbors arc_between(const Mesh& mesh, uint32_t v, uint32_t from, uint32_t to) {
   const Neighbors ring = mesh.ring(v);
+  assert(ring.contains(from) && ring.contains(to) && from != to);
   Neighbors arc;
   for (uint32_t k = ring.find(from);;) {
     k = k + 1 == ring.size() ? 0 : k + 1;
@@ -16,6 +19,7 @@ Neighbors arc_between(const Mesh& mesh, uint32_t v, uint32_t from, uint32_t to) 
 }
 
 Vec3 retreated(const Mesh& mesh, uint32_t v, const Neighbors& arc, float retreat) {
+  assert(arc.size() > 0);  // else the cycle is a face
   Vec3 mean;
   for (const uint32_t w : arc) mean = mean + mesh.at(w);
   mean = mean * (1.0F / static_cast<float>(arc.size()));

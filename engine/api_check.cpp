@@ -50,7 +50,7 @@ plc_status plc_surface_create(plc_context* context, plc_space space, const plc_i
     const plc::VoxelMesh mesh =
         plc::in_voxels(made->frame.to(space), xyz, vertex_count, abc, face_count);
     if (Status s = plc::import_mesh(mesh.xyz.data(), vertex_count, mesh.abc.data(), face_count,
-                                    host.schedule, made->mesh);
+                                    host.schedule, made->mesh, xyz);
         !s.ok()) {
       return s;
     }

@@ -35,13 +35,11 @@ bool target_of(plc_simd simd, plc::SimdTarget& target) {
   return false;
 }
 
-plc_status refuse(char* error, size_t error_size, plc_status status, std::string_view line) {
-  if (error != nullptr && error_size > 0) {
-    const size_t n = std::min(error_size - 1, line.size());
-    std::memcpy(error, line.data(), n);
-    error[n] = '\0';
-  }
-  return status;
+void tell(char* error, size_t error_size, std::string_view line) {
+  if (error == nullptr || error_size == 0) return;
+  const size_t n = std::min(error_size - 1, line.size());
+  std::memcpy(error, line.data(), n);
+  error[n] = '\0';
 }
 
 plc::Status check(const plc_context_options& options) {
@@ -106,14 +104,8 @@ void plc_context_options_defaults(plc_context_options* options) {
 
 plc_status plc_context_create(const plc_context_options* options, plc_context** context,
                               char* error, size_t error_size) {
-  try {
-    const plc::Status status = create(options, context);
-    return refuse(error, error_size, static_cast<plc_status>(status.code()), status.message());
-  } catch (const std::bad_alloc&) {
-    return refuse(error, error_size, PLC_OUT_OF_MEMORY, "out of memory");
-  } catch (...) {
-    return refuse(error, error_size, PLC_INTERNAL, "internal error");
-  }
+  return plc::caught([&] { return create(options, context); },
+                     [&](std::string_view line) { tell(error, error_size, line); });
 }
 
 void plc_context_destroy(plc_context* context) {

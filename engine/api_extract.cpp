@@ -26,7 +26,7 @@ Status extract(plc_context& context, const plc_image* image, const plc_parameter
       !s.ok()) {
     return s;
   }
-  if (Status s = check_extras(extras, p, volume->view, e, mask); !s.ok()) return s;
+  if (Status s = check_extras(extras, p, volume->view, volume->frame, e, mask); !s.ok()) return s;
   const auto pyramid = std::make_shared<PyramidData>();
   pyramid->host = context.host;
   if (Status s = build(volume, p, *pyramid); !s.ok()) return s;

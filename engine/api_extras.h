@@ -11,10 +11,12 @@
 namespace plc {
 
 // What the host has given, or NULL, in the structs of this version, and checked for the init of the
-// parameters: all that can be told without the image's voxels. `mask` is the place of the mask that
+// parameters: all that can be told without the image's voxels. frame: where
+// the image lies; places outside it are refused. `mask` is the place of the mask that
 // `extras` then points to.
 Status check_extras(const plc_extras* given, const plc_parameters& parameters,
-                    const VolumeView& image, plc_extras& extras, plc_image& mask);
+                    const VolumeView& image, const Frame& frame, plc_extras& extras,
+                    plc_image& mask);
 
 // Seeds, mesh, attachments and pins; not the mask, which needs the pyramid's spec.
 void take_extras(const plc_extras& extras, const Frame& frame, RecoverySpec& spec);

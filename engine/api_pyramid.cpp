@@ -7,6 +7,7 @@
 #include "engine/constants.h"
 #include "engine/parameters.h"
 #include "kernels/image_rows.h"
+#include "pyramid/border.h"
 #include "pyramid/check_volume.h"
 #include "pyramid/feature.h"
 
@@ -31,13 +32,24 @@ void choose_isos(const VolumeView& volume, double background, PyramidData& pyram
   } else if (p.level_iso_count == 0) {
     isos = covering_isos(pyramid.images, base_iso(volume, p, p.iso), p.inside_below == 0,
                          level_iso_bound(p, background), host.schedule, host.simd);
-    p.level_iso[0] = p.iso;
-    for (size_t h = 1; h < isos.size(); ++h) p.level_iso[h] = denormalised(p, isos[h]);
+    for (int h = p.levels; h > 0; --h) {
+      p.level_iso[p.levels - h] = denormalised(p, isos[static_cast<size_t>(h)]);
+    }
+    p.level_iso[p.levels] = p.iso;
   } else {
-    isos.push_back(base_iso(volume, p, p.level_iso[0]));
-    for (int h = 1; h <= p.levels; ++h) isos.push_back(normalised(p, p.level_iso[h]));
+    isos.push_back(base_iso(volume, p, p.level_iso[p.levels]));
+    for (int h = 1; h <= p.levels; ++h) isos.push_back(normalised(p, p.level_iso[p.levels - h]));
   }
   p.level_iso_count = std::isnan(p.iso) ? 0 : p.levels + 1;
+}
+
+void close_borders(PyramidData& pyramid) {
+  const plc_parameters& p = pyramid.parameters;
+  if (std::isnan(p.iso) || p.force == PLC_FORCE_GRADIENT) return;
+  const double outside = std::clamp(normalised(p, p.pad_value), 0.0, 1.0);
+  for (size_t h = 1; h < pyramid.isos.size(); ++h) {
+    close_border(pyramid.images.levels[h], pyramid.isos[h], outside);
+  }
 }
 
 }  // namespace
@@ -80,6 +92,7 @@ Status build(const std::shared_ptr<const VolumeData>& source, const plc_paramete
   }
   pyramid.seconds_images = now() - images_start;
   choose_isos(volume, background, pyramid);
+  close_borders(pyramid);
   host.log(PLC_LOG_INFO, "window " + number_text(p.window_low) + " .. " +
                              number_text(p.window_high) + ", surrounded by " +
                              number_text(p.pad_value) + ", " + std::to_string(p.levels) +
@@ -183,7 +196,7 @@ plc_status plc_pyramid_level_info(plc_context* context, const plc_pyramid* pyram
     const auto origin = plc::level_origin(*pyramid->data, h);
     std::copy(origin.begin(), origin.end(), out.origin);
     out.unit = image.unit;
-    out.iso = pyramid->data->parameters.level_iso[h];
+    out.iso = pyramid->data->parameters.level_iso[plc_pyramid_levels(pyramid) - h];
     plc::give_struct(out, level);
     return {};
   });

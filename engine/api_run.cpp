@@ -8,6 +8,8 @@
 #include "engine/api_extras.h"
 #include "engine/api_force.h"
 #include "engine/api_surface.h"
+#include "engine/cost.h"
+#include "engine/face_rings.h"
 #include "engine/fingerprint.h"
 #include "engine/parameters.h"
 #include "engine/refinement.h"
@@ -78,11 +80,31 @@ Status Run::prepare(std::shared_ptr<const PyramidData> pyramid, Pyramid images, 
   extras_.mesh_abc = nullptr;
   extras_.attachments = nullptr;
   extras_.pins = nullptr;
+  if (Status s = check_cost(images, spec); !s.ok()) return s;
   recovery_.emplace(std::move(images), std::move(spec), host_->schedule, host_->simd, hooks(),
                     surface_->mesh, surface_->records);
   surface_->seconds.struct_size = sizeof surface_->seconds;
   surface_->seconds.preparation = pyramid_->seconds + (now() - start);
   surface_->seconds.images = pyramid_->seconds_images;
+  return {};
+}
+
+// Refused before anything is made of it where even a quarter would not fit: of noise less is left
+// than is told. A warning where it is more than the image explains.
+Status Run::check_cost(const Pyramid& images, const RecoverySpec& spec) const {
+  constexpr double kSure = 4;
+  constexpr double kFew = 1000;
+  const Cost cost = expected_cost(images, spec.isos, spec.inside_above, spec.pad_voxels,
+                                  spec.anisotropy, host_->schedule);
+  const std::string what = "about " + number_text(cost.vertices, 3) + " vertices and " +
+                           number_text(cost.bytes / (1 << 20), 3) + " MiB";
+  if (cost.bytes / kSure > static_cast<double>(host_->memory.left()) ||
+      cost.vertices / kSure > static_cast<double>(kMaxMeshVertices)) {
+    return {ErrorCode::kOutOfMemory, "the surface would have " + what + ", more than there is"};
+  }
+  const bool much = cost.vertices > std::max(cost.voxels, kFew);
+  host_->log(much ? PLC_LOG_WARNING : PLC_LOG_INFO,
+             "expected: " + what + (much ? ", more than the image has voxels" : ""));
   return {};
 }
 
@@ -161,8 +183,9 @@ LevelVerdict Run::ask_user() {
 void Run::tell(const LevelRecord& r) const {
   if (host_->log_fn == nullptr) return;
   const std::string level = "level " + std::to_string(r.level) + ": ";
-  if (r.iterations == 0) {
-    host_->log(PLC_LOG_INFO, level + "nothing that holds a surface");
+  if (r.vertices == 0) {
+    host_->log(PLC_LOG_INFO, level + (r.iterations == 0 ? "nothing that holds a surface"
+                                                        : "nothing is left of the surface"));
     return;
   }
   const std::string what = std::to_string(r.iterations) + " iterations, " +
@@ -264,9 +287,9 @@ Status new_run(plc_context* context, const plc_pyramid* pyramid, const plc_param
   if (Status s = plc::check_parameters(p); !s.ok()) return s;
   if (Status s = plc::check_agreement(*pyramid->data, p); !s.ok()) return s;
   plc_image mask;
-  if (Status s = plc::check_extras(extras, p, pyramid->data->volume->view, e, mask); !s.ok()) {
+  const plc::VolumeData& volume = *pyramid->data->volume;
+  if (Status s = plc::check_extras(extras, p, volume.view, volume.frame, e, mask); !s.ok())
     return s;
-  }
   made = std::make_unique<plc_run>(context->host);
   return made->run.prepare(pyramid->data, plc::borrowed(pyramid->data->images), plc::Lasting::kRun,
                            p, e);
@@ -352,20 +375,18 @@ plc_status plc_run_save(plc_context* context, const plc_run* run, void* state, s
       return plc::bad_argument("run, size: must not be NULL");
     }
     if (Status s = run->run.usable(); !s.ok()) return s;
-    plc::StateWriter writer;
-    run->run.save(writer);
-    const plc::Buffer<uint8_t>& bytes = writer.bytes();
-    if (state == nullptr && capacity == 0) {
-      *size = bytes.size();
-      return {};
+    plc::StateWriter count;
+    run->run.save(count);
+    if (state != nullptr || capacity != 0) {
+      if (Status s = plc::check_room("state", state, static_cast<int64_t>(capacity),
+                                     static_cast<int64_t>(count.size()));
+          !s.ok()) {
+        return s;
+      }
+      plc::StateWriter writer(static_cast<uint8_t*>(state));
+      run->run.save(writer);
     }
-    if (Status s = plc::check_room("state", state, static_cast<int64_t>(capacity),
-                                   static_cast<int64_t>(bytes.size()));
-        !s.ok()) {
-      return s;
-    }
-    *size = bytes.size();
-    std::memcpy(state, bytes.data(), bytes.size());
+    *size = count.size();
     return {};
   });
 }

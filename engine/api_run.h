@@ -37,6 +37,7 @@ class Run {
   Status usable() const;
 
  private:
+  Status check_cost(const Pyramid& images, const RecoverySpec& spec) const;
   Status build_mask(const plc_image& mask, Lasting lasting, Pyramid& pyramid);
   RecoveryHooks hooks();
   LevelVerdict ask_user();

@@ -35,7 +35,7 @@ void Run::save(StateWriter& to) const {
   to.add(fingerprint());
   to.add(surface_->seconds.evolution);
   recovery_->save(to);
-  to.add(words_hash(to.bytes().data(), to.bytes().size()));
+  to.add(to.data() == nullptr ? uint64_t{0} : words_hash(to.data(), to.size()));
 }
 
 Status Run::restore(const uint8_t* state, size_t size) {

@@ -2,8 +2,11 @@
 #include "engine/api_surface.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "engine/curvature.h"
+#include "engine/double3.h"
 #include "engine/edge.h"
 #include "engine/measures.h"
 #include "engine/mesh_check.h"
@@ -54,12 +57,56 @@ void write_faces(const plc_surface& surface, plc_space space, uint32_t* abc) {
   }
 }
 
+// Whether floats of the space tell the directions of faces: those far from the origin round by much
+// of a voxel, and of very small or large units the squares of areas leave their range.
+bool floats_tell_normals(const Affine& a, const Buffer<float>& p) {
+  constexpr double kRounding = 0x1p-24;
+  constexpr double kOfVoxel = 1e-2;
+  double step = std::numeric_limits<double>::infinity();
+  for (size_t axis = 0; axis < 3; ++axis) {
+    step = std::min(step, std::hypot(a.m[axis], a.m[axis + 3], a.m[axis + 6]));
+  }
+  double farthest = 0;
+  for (const float x : p) farthest = std::max(farthest, std::abs(static_cast<double>(x)));
+  return step > 1e-8 && step < 1e8 && farthest * kRounding < kOfVoxel * step;
+}
+
+// In doubles, about the image's first voxel.
+void write_far_normals(const plc_surface& surface, Affine a, float* xyz) {
+  const Mesh& mesh = surface.mesh;
+  const double sign = a.mirrors() ? -1 : 1;
+  a.t = {};
+  Buffer<double> p(3 * static_cast<size_t>(mesh.slots()));
+  write_positions(surface, a, p.data());
+  const auto at = [&](uint32_t v) {
+    const size_t i = static_cast<size_t>(v) * 3;
+    return Double3{p[i], p[i + 1], p[i + 2]};
+  };
+  for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    const uint32_t d = mesh.valence(v);
+    Double3 sum;
+    for (uint32_t k = 0; k < d; ++k) {
+      const Double3 to = at(mesh.neighbor(v, k)) - at(v);
+      sum = sum + cross(to, at(mesh.neighbor(v, k + 1 == d ? 0 : k + 1)) - at(v));
+    }
+    const double norm = length(sum);
+    const Double3 normal = norm > 0 ? sum * (sign / norm) : Double3{};
+    *xyz++ = static_cast<float>(normal.x);
+    *xyz++ = static_cast<float>(normal.y);
+    *xyz++ = static_cast<float>(normal.z);
+  }
+}
+
 // Area vectors in the space itself: normals do not map as points do.
 void write_normals(const plc_surface& surface, plc_space space, float* xyz) {
   const Mesh& mesh = surface.mesh;
   const auto n = static_cast<size_t>(mesh.slots());
   Buffer<float> p(3 * n);
   write_positions(surface, affine_of(surface, space), p.data());
+  if (!floats_tell_normals(affine_of(surface, space), p)) {
+    write_far_normals(surface, affine_of(surface, space), xyz);
+    return;
+  }
   const double sign = affine_of(surface, space).mirrors() ? -1 : 1;
   const auto at = [&](uint32_t v) {
     const size_t i = static_cast<size_t>(v) * 3;
@@ -138,7 +185,7 @@ plc_level_report level_report(const plc_surface& surface, size_t index) {
   for (size_t a = 0; a < 3; ++a) report.dims[a] = surface.level_dims[index][a];
   report.unit = surface.level_units[index];
   report.delta = r.delta;
-  report.iso = surface.parameters.level_iso[r.level];
+  report.iso = surface.parameters.level_iso[index];
   report.iterations = r.iterations;
   report.vertices = r.vertices;
   report.converged = r.converged ? 1 : 0;
@@ -158,7 +205,10 @@ plc_level_report level_report(const plc_surface& surface, size_t index) {
   report.deferred = r.operations.deferred;
   report.late_bubbles = r.late.bubbles;
   report.late_cavities = r.late.cavities;
-  report.late_volume = r.late.volume;
+  // The record takes the axes for perpendicular.
+  const auto& s = surface.frame.spacing;
+  report.late_volume =
+      r.late.volume * (surface.frame.to(PLC_SPACE_LPS).volume() / (s[0] * s[1] * s[2]));
   report.moves = r.operations.moves;
   report.checks = r.operations.checks;
   return report;
@@ -188,6 +238,15 @@ int64_t plc_surface_face_count(const plc_surface* surface) {
 
 plc_status plc_surface_positions(plc_context* context, const plc_surface* surface, plc_space space,
                                  float* xyz, int64_t capacity) {
+  return plc::guarded(context, [&]() -> Status {
+    if (Status s = plc::check_vertices(surface, space, "xyz", xyz, capacity); !s.ok()) return s;
+    plc::write_positions(*surface, plc::affine_of(*surface, space), xyz);
+    return {};
+  });
+}
+
+plc_status plc_surface_positions_f64(plc_context* context, const plc_surface* surface,
+                                     plc_space space, double* xyz, int64_t capacity) {
   return plc::guarded(context, [&]() -> Status {
     if (Status s = plc::check_vertices(surface, space, "xyz", xyz, capacity); !s.ok()) return s;
     plc::write_positions(*surface, plc::affine_of(*surface, space), xyz);

@@ -1,6 +1,7 @@
 #include "engine/axial.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "engine/constants.h"
 #include "pyramid/memory.h"
@@ -51,6 +52,7 @@ void set_intermediary_ring(Mesh& mesh, const Vector<uint32_t>& p, uint32_t i, co
 }  // namespace
 
 AxialPlan plan_axial(const Mesh& mesh, uint32_t u, uint32_t v) {
+  assert(u != v && mesh.alive(u) && mesh.alive(v) && !mesh.adjacent(u, v));
   AxialPlan plan;
   plan.u = u;
   plan.v = v;

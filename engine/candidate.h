@@ -16,6 +16,10 @@ enum class Operation : uint8_t {
   kAxial       // between u and v
 };
 
+struct Candidate;
+// Whether no vertex would get more neighbours than it may have; axial ones with a few to spare.
+bool fits_neighbors(const Mesh& mesh, const Candidate& candidate);
+
 struct Candidate {
   Operation operation;
   float key;  // squared length or distance; negated where the longest comes first

@@ -61,7 +61,7 @@ double vertices_needed(const Mesh& mesh) {
 }
 
 Status divide_long_edges(Mesh& mesh, OperationCounts& counts) {
-  if (vertices_needed(mesh) > static_cast<double>(kMaxMeshVertices)) return too_many_vertices();
+  if (vertices_needed(mesh) > static_cast<double>(mesh.most_vertices)) return too_many_vertices();
   const auto delta = static_cast<float>(mesh.delta);
   const float longest = kMaxEdge * kMaxEdge * delta * delta;
   // An edge in the queue stays what it is until its turn: only edges taken from it go.
@@ -74,8 +74,8 @@ Status divide_long_edges(Mesh& mesh, OperationCounts& counts) {
     const LongEdge top = queue.top();
     queue.pop();
     const Edge e = edge_between(mesh, top.u, top.v);
-    if (mesh.slots() >= kMaxMeshVertices) return too_many_vertices();
-    if (std::max(mesh.valence(e.a), mesh.valence(e.b)) >= kMaxValence) {
+    if (mesh.slots() >= mesh.most_vertices) return too_many_vertices();
+    if (std::max(mesh.valence(e.a), mesh.valence(e.b)) >= mesh.most_neighbors) {
       return {ErrorCode::kInvalidData, "too many edges at one vertex to divide those around it"};
     }
     const uint32_t w = create_on_edge(mesh, e);
@@ -124,9 +124,13 @@ Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget si
   mesh.delta = delta;
   const uint32_t given = mesh.slots();
   if (Status s = divide_long_edges(mesh, counts); !s.ok()) return s;
-  if (mesh.slots() != given && !meeting_faces(mesh, schedule, simd).empty()) {
-    return {ErrorCode::kInvalidData,
-            "the surface has faces too thin to be divided in single precision"};
+  if (mesh.slots() != given) {
+    // Boxes over runs of ids that lie anywhere part nothing: the search would take quadratic time.
+    mesh.renumber(morton_order(mesh, schedule), schedule);
+    if (!meeting_faces(mesh, schedule, simd).empty()) {
+      return {ErrorCode::kInvalidData,
+              "the surface has faces too thin to be divided in single precision"};
+    }
   }
   Resolution resolution(mesh, schedule, simd);
   // Just within (2).

@@ -1,6 +1,7 @@
 // Every constant of the paper and of our closing of its gaps, once, with its source and what
 // changing it does.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 namespace plc {
@@ -16,6 +17,9 @@ inline constexpr float kMinApart = 1.4433757F;
 inline constexpr double kRefinement = 1.7320508075688772;
 // U_h / delta_h, within [1, 2.5 / sqrt 3] by (14). Larger means a finer mesh for the same image.
 inline constexpr double kUnitPerDelta = 1.2;
+// Where the mesh lives in millimetres (method 1 of 4.4), cubes of U_h in a voxel, at most: up to
+// 1 : 1 : 8 the mesh is as fine as the paper has it.
+inline constexpr double kCubesPerVoxel = 8;
 
 // Coordinates lie within this of the origin of mesh space: further out floats do not tell
 // neighbouring voxels apart, and cells of the hash would be beyond their numbers.
@@ -29,6 +33,11 @@ inline constexpr float kReach = 16777216;
 // more is at risk (risk.h).
 inline constexpr float kCheckPath = 0.2F;
 inline constexpr int kCheckPeriod = 50;
+
+// Pairs that violate (3) which are listed for one vertex at a time. Where vertices are delta apart
+// there are no more; a start that is far finer than delta has thousands, whose list would not fit
+// into memory. The others are seen when these have been resolved.
+inline constexpr size_t kMostNear = 256;
 
 // ---- sleep (sleep.h) ------------------------------------------------------------------------
 
@@ -120,6 +129,9 @@ inline constexpr int kLateRounds = 2;
 // RK4 is stable on the imaginary axis up to 2.83 and damped modes need less: dt sqrt(k / m) is
 // kept below this, k the stiffest mode of the forces.
 inline constexpr double kStableFrequency = 2.2;
+// ... and on the real axis up to 2.79: dt gamma / m is kept below this. Beyond it speeds grow from
+// step to step, whatever the forces.
+inline constexpr double kStableDecay = 2.5;
 // The energy is near 0 from rest, before anything has moved: a level runs at least this long, and
 // has converged when its energy was calm this many times in a row.
 inline constexpr int kMinIterations = 20;

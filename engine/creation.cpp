@@ -1,10 +1,12 @@
 #include "engine/creation.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace plc {
 
 uint32_t create_on_edge(Mesh& mesh, const Edge& e) {
+  assert(has_edge(mesh, e));
   const Vec3 speed = midpoint(mesh.velocity.at(e.u), mesh.velocity.at(e.v));
   const auto count = std::max(mesh.operations[e.u], mesh.operations[e.v]);
   const uint32_t w = mesh.create(midpoint(mesh.at(e.u), mesh.at(e.v)), speed);

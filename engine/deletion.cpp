@@ -1,6 +1,7 @@
 #include "engine/deletion.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace plc {
 
@@ -32,6 +33,8 @@ Neighbors merged_ring(const Mesh& mesh, const Edge& e) {
 }
 
 void delete_edge(Mesh& mesh, const Edge& e, Vec3 place) {
+  assert(has_edge(mesh, e) && common_neighbors(mesh, e.u, e.v).size() == 2);
+  assert(mesh.valence(e.a) > 3 && mesh.valence(e.b) > 3);
   const Neighbors ring = merged_ring(mesh, e);
   const Neighbors of_v = mesh.ring(e.v);
   mesh.remove(e.a, e.v);

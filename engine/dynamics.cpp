@@ -47,8 +47,10 @@ float stable_time_step(const Model& model, float stiffness) {
                           12.0 * static_cast<double>(model.spring) +
                           std::abs(static_cast<double>(model.attraction)) +
                           2 / kUnitPerDelta * gradient + static_cast<double>(stiffness);
-  const double longest = kStableFrequency * std::sqrt(static_cast<double>(model.mass) / stiffest);
-  return std::min(model.time_step, static_cast<float>(longest));
+  const double mass = static_cast<double>(model.mass);
+  const double longest = kStableFrequency * std::sqrt(mass / stiffest);
+  const double damped = kStableDecay * mass / static_cast<double>(model.damping);
+  return std::min(model.time_step, static_cast<float>(std::min(longest, damped)));
 }
 
 Dynamics::Dynamics(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model)

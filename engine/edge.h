@@ -1,5 +1,7 @@
 // What the transformations ask about an edge and its two faces.
 #pragma once
+#include <cassert>
+
 #include "engine/mesh.h"
 
 namespace plc {
@@ -12,6 +14,7 @@ struct Edge {
 // The edge to neighbour k of u.
 inline Edge edge_at(const Mesh& mesh, uint32_t u, uint32_t k) {
   const uint32_t d = mesh.valence(u);
+  assert(k < d);
   return {u, mesh.neighbor(u, k), mesh.neighbor(u, k == 0 ? d - 1 : k - 1),
           mesh.neighbor(u, k + 1 == d ? 0 : k + 1)};
 }
@@ -33,5 +36,12 @@ inline Vec3 area_vector(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) {
 
 // The sum of the area vectors around v, unit length, from the positions of now.
 Vec3 vertex_normal(const Mesh& mesh, uint32_t v);
+
+// Whether the mesh has this edge, between these faces.
+inline bool has_edge(const Mesh& mesh, const Edge& e) {
+  if (!mesh.alive(e.u) || !mesh.alive(e.v) || !mesh.adjacent(e.u, e.v)) return false;
+  const Edge there = edge_between(mesh, e.u, e.v);
+  return there.a == e.a && there.b == e.b;
+}
 
 }  // namespace plc

@@ -36,11 +36,7 @@ class FaceRings {
 // rest, every vertex due for a check.
 void fill_from_rings(Mesh& mesh, const float* xyz, size_t vertex_count, const FaceRings& rings);
 
-// Ids up to which the engine's buffers can be indexed: 12 columns per vertex within 32 bits.
-inline constexpr uint64_t kMaxMeshVertices = (uint64_t{1} << 32) / kRingColumns - kRingLanes;
-// kOutOfMemory: it would be more.
+// kOutOfMemory: it would be more than kMaxMeshVertices.
 Status too_many_vertices();
-// Valences are 16 bit.
-inline constexpr uint32_t kMaxValence = 65535;
 
 }  // namespace plc

@@ -1,5 +1,7 @@
 #include "engine/frame.h"
 
+#include <cmath>
+
 namespace plc {
 
 namespace {
@@ -21,6 +23,10 @@ std::array<double, 3> Affine::point(const std::array<double, 3>& p) const {
   std::array<double, 3> r = vector(p);
   for (size_t i = 0; i < 3; ++i) r[i] += t[i];
   return r;
+}
+
+double Affine::volume() const {
+  return std::abs(determinant(m));
 }
 
 bool Affine::mirrors() const {

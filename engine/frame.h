@@ -15,6 +15,7 @@ struct Affine {
   std::array<double, 3> vector(const std::array<double, 3>& v) const;  // without t
   // Turns a mesh inside out: the winding of faces is to be reversed.
   bool mirrors() const;
+  double volume() const;  // of what was of volume 1
   Affine inverse() const;
 };
 

@@ -1,13 +1,17 @@
 // What the opaque handles of the C API hold, and how failures cross its boundary.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <exception>
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "engine/face_rings.h"
 #include "engine/float_environment.h"
 #include "engine/frame.h"
 #include "engine/mesh.h"
@@ -88,9 +92,40 @@ struct plc_surface {
 
 namespace plc {
 
-inline plc_status report(plc_context* context, const Status& status) {
-  context->message = status.message();
-  return static_cast<plc_status>(status.code());
+// What a host is told of a failure, in one line.
+inline std::string message_of(const Status& status) {
+  std::string line = status.message();
+  if (status.code() == ErrorCode::kInternal) {
+    line = "internal error: " + line;
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  }
+  return line;
+}
+
+// body(), which returns a Status; no exception gets past it. tell(line) says what was wrong, ""
+// where nothing was.
+template <typename Body, typename Tell>
+plc_status caught(Body&& body, Tell&& tell) {
+  try {
+    Status status;
+    try {
+      status = body();
+    } catch (const TooManyVertices&) {
+      status = too_many_vertices();
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& e) {
+      status = {ErrorCode::kInternal, e.what()};
+    } catch (...) {
+      status = {ErrorCode::kInternal, "something was thrown that is no std::exception"};
+    }
+    tell(message_of(status));
+    return static_cast<plc_status>(status.code());
+  } catch (const std::bad_alloc&) {
+    tell("out of memory");
+    return PLC_OUT_OF_MEMORY;
+  }
 }
 
 // Runs body, which returns a Status, in the memory of the context; no exception gets past it.
@@ -100,15 +135,8 @@ plc_status guarded(plc_context* context, Body&& body) {
   const std::shared_ptr<Host> host = context->host;
   const MemoryScope scope(host->memory);
   const FloatEnvironment environment;
-  try {
-    return report(context, body());
-  } catch (const std::bad_alloc&) {
-    context->message = "out of memory";
-    return PLC_OUT_OF_MEMORY;
-  } catch (...) {
-    context->message = "internal error";
-    return PLC_INTERNAL;
-  }
+  return caught(std::forward<Body>(body),
+                [&](std::string_view line) { context->message.assign(line); });
 }
 
 // Of a struct that a host fills in: what its version of the header has, the rest at its default.

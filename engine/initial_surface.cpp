@@ -71,17 +71,20 @@ constexpr double kInitialEdge = 2.0;
 
 }  // namespace
 
-Status make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& executor) {
+std::array<double, 3> bubble_half(const Extent& box, double delta) {
   // The corner of the box lies on the surface: 3 (1/r)^4 = 1.
-  const double reach = std::pow(3.0, 0.25);
-  double half[3];
-  double middle[3];
-  double longest = 0;
+  const double reach = std::sqrt(std::sqrt(3.0));
+  std::array<double, 3> half{};
   for (size_t i = 0; i < 3; ++i) {
     half[i] = std::max((box.high[i] - box.low[i]) / 2 * reach, 2 * delta);
-    middle[i] = (box.high[i] + box.low[i]) / 2;
-    longest = std::max(longest, half[i]);
   }
+  return half;
+}
+
+Status make_bubble(Mesh& mesh, const Extent& box, double delta, const Executor& executor) {
+  const std::array<double, 3> half = bubble_half(box, delta);
+  const std::array<double, 3> middle = box.middle();
+  const double longest = *std::max_element(half.begin(), half.end());
   if (Status s = make_sphere(mesh, kInitialEdge * delta / longest, 1, executor); !s.ok()) return s;
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     const Vec3 n = mesh.at(v);
@@ -102,7 +105,7 @@ Status append_bubble(Mesh& mesh, Vec3 centre, Vec3 radii, const Executor& execut
   if (Status s = make_sphere(sphere, kInitialEdge * mesh.delta / radius, 1, executor); !s.ok()) {
     return s;
   }
-  if (uint64_t{mesh.slots()} + sphere.slots() > kMaxMeshVertices) return too_many_vertices();
+  if (uint64_t{mesh.slots()} + sphere.slots() > mesh.most_vertices) return too_many_vertices();
   append_sphere(mesh, sphere, centre, radii);
   return {};
 }

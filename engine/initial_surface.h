@@ -12,7 +12,14 @@ namespace plc {
 // A box of mesh space.
 struct Extent {
   std::array<double, 3> low{}, high{};
+
+  std::array<double, 3> middle() const {
+    return {(high[0] + low[0]) / 2, (high[1] + low[1]) / 2, (high[2] + low[2]) / 2};
+  }
 };
+
+// The half axes of the bubble around a box; its middle is the box's.
+std::array<double, 3> bubble_half(const Extent& box, double delta);
 
 // One closed surface around the box, with edges of 1.2 to 2.7 times delta in the mean, none as long
 // as 3.46 (embedding_guard.h); the first iteration splits what violates (2). An icosahedron refined

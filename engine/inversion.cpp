@@ -1,5 +1,7 @@
 #include "engine/inversion.h"
 
+#include <cassert>
+
 namespace plc {
 
 bool can_invert(const Mesh& mesh, const Edge& e) {
@@ -11,6 +13,8 @@ bool can_invert(const Mesh& mesh, const Edge& e) {
 }
 
 void invert_edge(Mesh& mesh, const Edge& e) {
+  assert(has_edge(mesh, e) && e.a != e.b && !mesh.adjacent(e.a, e.b));
+  assert(mesh.valence(e.u) > 3 && mesh.valence(e.v) > 3);
   mesh.remove(e.u, e.v);
   mesh.remove(e.v, e.u);
   mesh.insert_after(e.a, e.v, e.b);

@@ -7,9 +7,12 @@
 
 #include "engine/conform.h"
 #include "engine/constants.h"
+#include "engine/face_rings.h"
 #include "engine/initial_surface.h"
 #include "engine/iso_surface.h"
+#include "engine/mesh_append.h"
 #include "engine/mesh_import.h"
+#include "engine/stretched_bubble.h"
 #include "kernels/image_value.h"
 #include "pyramid/memory.h"
 
@@ -92,11 +95,17 @@ Extent image_extent(const LevelImage& level) {
   return box;
 }
 
-std::string name_of(const Seed& seed) {
-  char line[120];
-  std::snprintf(line, sizeof line, "seed at voxel (%.6g, %.6g, %.6g)", seed.centre[0],
-                seed.centre[1], seed.centre[2]);
-  return line;
+std::string name_of(size_t seed) {
+  return "seed " + std::to_string(seed);
+}
+
+// The longest of a length in the mesh along its axes.
+double in_mm(double length, const LevelImage& level) {
+  double mm = 0;
+  for (size_t a = 0; a < 3; ++a) {
+    mm = std::max(mm, level.pyramid.levels[0].voxel[a] / level.space.step[a]);
+  }
+  return length * mm;
 }
 
 // In mesh units; spheres of mm are ellipsoids where the mesh lives in voxels.
@@ -137,50 +146,107 @@ bool near(const Ellipsoid& a, const Ellipsoid& b, float gap) {
   return squared({way.x / reach.x, way.y / reach.y, way.z / reach.z}) < 1;
 }
 
+Status bubble_around(const Extent& box, double delta, const Schedule& schedule, SimdTarget simd,
+                     Mesh& mesh) {
+  constexpr int kPower = 4;  // as make_bubble() has it
+  const std::array<double, 3> half = bubble_half(box, delta);
+  if (!is_stretched(half)) return make_bubble(mesh, box, delta, schedule);
+  return make_stretched_bubble(mesh, box.middle(), half, kPower, delta, schedule, simd);
+}
+
+Status append_seed(const Ellipsoid& e, const Schedule& schedule, SimdTarget simd, Mesh& mesh) {
+  const std::array<double, 3> half{e.radii.x, e.radii.y, e.radii.z};
+  if (!is_stretched(half)) return append_bubble(mesh, e.centre, e.radii, schedule);
+  constexpr int kPower = 2;
+  Mesh bubble;
+  Status s = make_stretched_bubble(bubble, {e.centre.x, e.centre.y, e.centre.z}, half, kPower,
+                                   mesh.delta, schedule, simd);
+  if (!s.ok()) return s;
+  if (uint64_t{mesh.slots()} + bubble.slots() > kMaxMeshVertices) return too_many_vertices();
+  append_mesh(mesh, bubble, false, [](Vec3 p) { return p; });
+  return {};
+}
+
 Status make_seeds(const StartSpec& spec, const LevelImage& level, double delta,
-                  const Executor& executor, Mesh& mesh) {
+                  const Schedule& schedule, SimdTarget simd, Mesh& mesh) {
   const auto unit = static_cast<float>(delta);
   mesh.delta = delta;
   const Extent image = image_extent(level);
   Vector<Ellipsoid> made;
   for (const Seed& seed : spec.seeds) {
+    const std::string name = name_of(made.size());
     if (!within_reach(seed, level.space, image)) {
-      return {ErrorCode::kInvalidArgument, name_of(seed) + ": leads too far beyond the image"};
+      return {ErrorCode::kInvalidArgument, name + ": leads too far beyond the image"};
     }
     const Ellipsoid e = ellipsoid_of(seed, level.space);
     if (std::min({e.radii.x, e.radii.y, e.radii.z}) < kSmallestBubble * unit) {
       char line[120];
       std::snprintf(line, sizeof line,
-                    ": too small for level %d, where the smallest radius is %.3g mesh units; use "
-                    "fewer levels or larger seeds",
-                    level.h, static_cast<double>(kSmallestBubble * unit));
-      return {ErrorCode::kInvalidArgument, name_of(seed) + line};
+                    ": too small for level %d, where the smallest radius is %.3g mm; use fewer "
+                    "levels or larger seeds",
+                    level.h, in_mm(kSmallestBubble * delta, level));
+      return {ErrorCode::kInvalidArgument, name + line};
     }
     for (size_t i = 0; i < made.size(); ++i) {
       if (near(made[i], e, kBubbleGap * unit)) {
-        return {ErrorCode::kInvalidArgument, name_of(seed) + ": touches the " +
-                                                 name_of(spec.seeds[i]) + " on level " +
-                                                 std::to_string(level.h)};
+        return {ErrorCode::kInvalidArgument,
+                name + ": touches " + name_of(i) + " on level " + std::to_string(level.h)};
       }
     }
     made.push_back(e);
-    if (Status s = append_bubble(mesh, e.centre, e.radii, executor); !s.ok()) return s;
+    if (Status s = append_seed(e, schedule, simd, mesh); !s.ok()) return s;
   }
   return {};
 }
 
 Status make_mesh(const StartSpec& spec, const LevelImage& level, const Executor& executor,
                  Mesh& mesh) {
+  const Extent image = image_extent(level);
+  for (size_t i = 0; i < spec.xyz.size(); i += 3) {
+    const Seed point{{spec.xyz[i], spec.xyz[i + 1], spec.xyz[i + 2]}, {0, 0, 0}};
+    if (!within_reach(point, level.space, image)) {
+      return {ErrorCode::kInvalidArgument,
+              "vertex " + std::to_string(i / 3) + " of the mesh lies too far beyond the image"};
+    }
+  }
   Vector<double> xyz(spec.xyz.size());
   for (size_t i = 0; i < xyz.size(); ++i) xyz[i] = spec.xyz[i] * level.space.step[i % 3];
   return import_mesh(xyz.data(), static_cast<int64_t>(xyz.size() / 3), spec.abc.data(),
-                     static_cast<int64_t>(spec.abc.size() / 3), executor, mesh);
+                     static_cast<int64_t>(spec.abc.size() / 3), executor, mesh,
+                     spec.told.empty() ? nullptr : spec.told.data());
+}
+
+// Every so many voxels of an image that is finer than delta on some axis (level_delta): a surface
+// that follows all of them is so crowded that conform() takes minutes.
+Status coarse_iso_surface(const ImageView& view, const std::array<int32_t, 3>& stride, float iso,
+                          bool inside_above, const Executor& executor, Mesh& mesh) {
+  ImageView coarse = view;
+  for (size_t a = 0; a < 3; ++a) {
+    const auto step = static_cast<float>(stride[a]);
+    coarse.dims[a] = (view.dims[a] - 1) / stride[a] + 1;
+    coarse.scale[a] = view.scale[a] / step;
+    coarse.offset[a] = view.offset[a] / step;
+  }
+  const auto at = [&](int32_t x, int32_t y, int32_t z) {
+    return image_value(view, int64_t{x} * stride[0], int64_t{y} * stride[1],
+                       int64_t{z} * stride[2]);
+  };
+  const auto row = [&](int32_t y, int32_t z, float* values) {
+    for (int32_t x = 0; x < coarse.dims[0]; ++x) values[x] = at(x, y, z);
+  };
+  return iso_surface(coarse, {row, at}, iso, inside_above, executor, mesh);
 }
 
 // An image without the object is no error: the next finer level may show it.
-Status make_iso(const ImageView& view, float iso, bool inside_above, const Executor& executor,
-                Mesh& mesh) {
-  Status s = iso_surface(view, iso, inside_above, executor, mesh);
+Status make_iso(const ImageView& view, float iso, bool inside_above, double delta,
+                const Executor& executor, Mesh& mesh) {
+  std::array<int32_t, 3> stride{};
+  for (size_t a = 0; a < 3; ++a) {
+    stride[a] = std::max(1, static_cast<int32_t>(delta * static_cast<double>(view.scale[a])));
+  }
+  Status s = stride == std::array<int32_t, 3>{1, 1, 1}
+                 ? iso_surface(view, iso, inside_above, executor, mesh)
+                 : coarse_iso_surface(view, stride, iso, inside_above, executor, mesh);
   return s.code() == ErrorCode::kInvalidData ? Status() : s;
 }
 
@@ -195,18 +261,18 @@ Status start_surface(const StartSpec& spec, const LevelImage& level, double delt
   switch (spec.init) {
     case Init::kBubble:
       if (std::isnan(level.iso)) box = image_extent(level);
-      if (std::isnan(level.iso) || object_extent(level, schedule, box))
-        return make_bubble(mesh, box, delta, schedule);
-      return {};
+      if (!std::isnan(level.iso) && !object_extent(level, schedule, box)) return {};
+      return bubble_around(box, delta, schedule, simd, mesh);
     case Init::kBubbles:
       return make_bubbles(mesh, image_extent(level), spec.bubbles, delta, schedule);
     case Init::kSeeds:
-      return make_seeds(spec, level, delta, schedule, mesh);
+      return make_seeds(spec, level, delta, schedule, simd, mesh);
     case Init::kIso:
-      made = make_iso(view_of(level, level.pyramid), level.iso, level.inside_above, schedule, mesh);
+      made = make_iso(view_of(level, level.pyramid), level.iso, level.inside_above, delta, schedule,
+                      mesh);
       break;
     case Init::kMask:
-      made = make_iso(view_of(level, spec.mask), 0.5F, true, schedule, mesh);
+      made = make_iso(view_of(level, spec.mask), 0.5F, true, delta, schedule, mesh);
       break;
     case Init::kMesh:
       made = make_mesh(spec, level, schedule, mesh);

@@ -34,6 +34,7 @@ struct StartSpec {
   std::vector<Seed> seeds;
   Pyramid mask;          // kMask: a pyramid like the image's, the object near 1
   Vector<double> xyz;    // kMesh: three voxel indices of the unpadded I_0 per vertex
+  Vector<double> told;   // ... the same vertices as the user gave them, for messages
   Vector<uint32_t> abc;  // ... three vertices per face, counter-clockwise seen from outside
 };
 

@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -16,6 +20,15 @@ namespace {
 // Tails come in powers of two from 16 up; class c holds 16 << c neighbours.
 uint32_t tail_class(uint32_t length) {
   return static_cast<uint32_t>(std::countr_zero(std::bit_ceil(std::max(length, 16U)))) - 4;
+}
+
+[[maybe_unused]] bool distinct(const Vector<uint32_t>& ids, uint32_t below) {
+  std::vector<bool> seen(below);
+  return std::all_of(ids.begin(), ids.end(), [&](uint32_t v) {
+    if (v >= below || seen[v]) return false;
+    seen[v] = true;
+    return true;
+  });
 }
 
 // What a renumbered mesh has room for: ids are given anew when a sixteenth of them has been
@@ -66,6 +79,7 @@ Neighbors Mesh::ring(uint32_t v) const {
 }
 
 void Mesh::place(uint32_t v, Vec3 p) {
+  assert(v < slots_);
   packed[v] = {p.x, p.y, p.z, 0};
   calm[v] = 0;
 }
@@ -77,8 +91,9 @@ uint32_t Mesh::create(Vec3 p, Vec3 speed) {
     v = free_.back();
     free_.pop_back();
   } else {
-    grow(slots_ + 1);
+    grow(uint64_t{slots_} + 1);
   }
+  assert(!alive(v));
   start_vertex(v);
   place(v, p);
   velocity.set(v, speed);
@@ -94,8 +109,9 @@ void Mesh::start_vertex(uint32_t v) {
 
 uint32_t Mesh::create_many(uint32_t count, uint32_t valence, const Executor& executor) {
   constexpr size_t kBlock = 4096;
+  assert(free_.empty() && valence >= 3 && valence <= kRingSlots);
   const uint32_t first = slots_;
-  grow(slots_ + count);
+  grow(uint64_t{slots_} + count);
   run_blocks(executor, count, kBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const auto v = static_cast<uint32_t>(first + i);
@@ -109,6 +125,7 @@ uint32_t Mesh::create_many(uint32_t count, uint32_t valence, const Executor& exe
 }
 
 void Mesh::destroy(uint32_t v) {
+  assert(alive(v));
   set_valence(v, 0);
   velocity.set(v, {});
   normal.set(v, {});
@@ -118,6 +135,10 @@ void Mesh::destroy(uint32_t v) {
 
 // Brings the tail in line with the new valence; the slots are not touched.
 void Mesh::set_valence(uint32_t v, uint32_t d) {
+  assert(v < slots_);
+  if (d > kMaxValence) {
+    throw std::length_error("a vertex would have " + std::to_string(d) + " neighbours");
+  }
   const uint32_t old_tail = valence_[v] > kRingSlots ? valence_[v] - kRingSlots : 0;
   const uint32_t new_tail = d > kRingSlots ? d - kRingSlots : 0;
   const bool keep = old_tail != 0 && new_tail != 0 && tail_class(old_tail) == tail_class(new_tail);
@@ -136,6 +157,7 @@ void Mesh::set_ring(uint32_t v, const Neighbors& ring) {
 }
 
 void Mesh::exchange_ring(uint32_t v, const Neighbors& ring) {
+  assert(ring.size() == valence(v));
   const uint32_t* from = ring.data();
   const uint32_t inline_count = std::min(ring.size(), kRingSlots);
   for (uint32_t k = 0; k < inline_count; ++k) column(v, k) = from[k];
@@ -155,11 +177,13 @@ void Mesh::replace(uint32_t v, uint32_t old_neighbor, uint32_t new_neighbor) {
     }
     return;
   }
+  assert(false && "replace: no such neighbour");
 }
 
 void Mesh::replace(uint32_t v, uint32_t old_neighbor, uint32_t first, uint32_t second) {
   Neighbors r = ring(v);
   const uint32_t k = r.find(old_neighbor);
+  assert(k < r.size());
   r[k] = first;
   r.insert(k + 1, second);
   set_ring(v, r);
@@ -167,12 +191,14 @@ void Mesh::replace(uint32_t v, uint32_t old_neighbor, uint32_t first, uint32_t s
 
 void Mesh::insert_after(uint32_t v, uint32_t neighbor, uint32_t added) {
   Neighbors r = ring(v);
+  assert(r.contains(neighbor));
   r.insert(r.find(neighbor) + 1, added);
   set_ring(v, r);
 }
 
 void Mesh::remove(uint32_t v, uint32_t neighbor) {
   Neighbors r = ring(v);
+  assert(r.contains(neighbor));
   r.erase(r.find(neighbor));
   set_ring(v, r);
 }
@@ -180,17 +206,20 @@ void Mesh::remove(uint32_t v, uint32_t neighbor) {
 void Mesh::clear() {
   Mesh empty;
   empty.delta = delta;
+  empty.most_vertices = most_vertices;
+  empty.most_neighbors = most_neighbors;
   *this = std::move(empty);
 }
 
-void Mesh::reserve(uint32_t vertices) {
+void Mesh::reserve(uint64_t vertices) {
   const uint32_t keep = slots_;
-  grow(std::max(vertices, slots_));
+  grow(std::max<uint64_t>(vertices, slots_));
   slots_ = keep;
 }
 
-void Mesh::grow(uint32_t slots) {
-  slots_ = slots;
+void Mesh::grow(uint64_t slots) {
+  if (slots > most_vertices) throw TooManyVertices();
+  slots_ = static_cast<uint32_t>(slots);
   const size_t n = padded();
   if (n <= valence_.size()) return;
   const size_t old = valence_.size();
@@ -213,7 +242,9 @@ uint32_t Mesh::allocate_tail(uint32_t length) {
     return offset;
   }
   const size_t offset = tail_.size();
-  tail_.resize(offset + (16U << tail_class(length)));
+  const size_t end = offset + (16U << tail_class(length));
+  if (end > std::numeric_limits<uint32_t>::max()) throw TooManyVertices();
+  tail_.resize(end);
   refresh_view();
   return static_cast<uint32_t>(offset);
 }
@@ -223,8 +254,11 @@ void Mesh::free_tail(uint32_t offset, uint32_t length) {
 }
 
 void Mesh::renumber(const Vector<uint32_t>& order, const Executor& executor) {
+  assert(order.size() == alive_ && distinct(order, slots_));
   Mesh to;
   to.delta = delta;
+  to.most_vertices = most_vertices;
+  to.most_neighbors = most_neighbors;
   to.slots_ = to.alive_ = static_cast<uint32_t>(order.size());
   carry_rings(order, to, executor);
   std::vector<std::function<void()>> streams;

@@ -1,7 +1,9 @@
 // The triangulated mesh (3.1): structure-of-arrays vertex streams and oriented neighbour rings.
 #pragma once
 #include <array>
+#include <cassert>
 #include <cstdint>
+#include <new>
 
 #include "engine/neighbors.h"
 #include "engine/vec3.h"
@@ -14,6 +16,19 @@ namespace plc {
 
 class StateReader;
 class StateWriter;
+
+// Ids up to which the engine's buffers can be indexed: 12 columns per vertex within 32 bits.
+inline constexpr uint32_t kMaxMeshVertices =
+    static_cast<uint32_t>((uint64_t{1} << 32) / kRingColumns - kRingLanes);
+// Valences are 16 bit.
+inline constexpr uint32_t kMaxValence = 65535;
+
+// Thrown before there would be more ids than the mesh may have, or more neighbours beyond the
+// columns than can be indexed.
+class TooManyVertices : public std::bad_alloc {
+ public:
+  const char* what() const noexcept override { return "too many vertices"; }
+};
 
 // Three float streams of one vector quantity, 12 bytes per vertex.
 struct Streams3 {
@@ -65,26 +80,40 @@ class Mesh {
   // The invariant of (1)-(3), mesh units.
   double delta = 1;
 
+  // Ids are below the first. No vertex gets more neighbours than the second: transformations that
+  // would give it more are refused (resolution.h).
+  uint32_t most_vertices = kMaxMeshVertices;
+  uint32_t most_neighbors = kMaxValence;
+
   uint32_t slots() const { return slots_; }         // ids are below this
   uint32_t padded() const;                          // slots, up to whole blocks
   uint32_t vertex_count() const { return alive_; }  // not deleted
   // Slots there is memory for: more are had by copying all streams.
   size_t room() const { return valence_.capacity(); }
-  bool alive(uint32_t v) const { return valence_[v] != 0; }
-  uint32_t valence(uint32_t v) const { return valence_[v]; }
-  uint32_t neighbor(uint32_t v, uint32_t k) const { return view_.slot(v, k); }
+  bool alive(uint32_t v) const { return valence(v) != 0; }
+  uint32_t valence(uint32_t v) const {
+    assert(v < slots_);
+    return valence_[v];
+  }
+  uint32_t neighbor(uint32_t v, uint32_t k) const {
+    assert(k < valence(v));
+    return view_.slot(v, k);
+  }
   bool adjacent(uint32_t u, uint32_t v) const;
   RingView rings() const { return view_; }
   Neighbors ring(uint32_t v) const;
-  Vec3 at(uint32_t v) const { return {packed[v].x, packed[v].y, packed[v].z}; }
+  Vec3 at(uint32_t v) const {
+    assert(v < slots_);
+    return {packed[v].x, packed[v].y, packed[v].z};
+  }
 
   void place(uint32_t v, Vec3 p);
-  // Takes an id from the free list (last freed first) or a new one; its ring is still empty, it
-  // counts as alive from set_ring on, and it is due for a check.
+  // Takes an id from the free list (last freed first) or a new one, or throws TooManyVertices; its
+  // ring is still empty, it counts as alive from set_ring on, and it is due for a check.
   uint32_t create(Vec3 p, Vec3 velocity);
   // New ids that follow one another, at the origin, at rest and due for a check. They are alive at
   // once: each gets its ring, of this valence, by exchange_ring(). 3 <= valence <= kRingSlots. Only
-  // where no vertex has been deleted.
+  // where no vertex has been deleted. Throws TooManyVertices.
   uint32_t create_many(uint32_t count, uint32_t valence, const Executor& executor);
   void destroy(uint32_t v);
   void set_ring(uint32_t v, const Neighbors& ring);
@@ -107,7 +136,7 @@ class Mesh {
   static constexpr uint8_t kFoldRisk = 2;
 
   void clear();
-  void reserve(uint32_t vertices);
+  void reserve(uint64_t vertices);  // throws TooManyVertices
   // Vertices created since the ids were last renumbered: how far ids have strayed from space order.
   uint32_t created() const { return created_; }
   // No id was created or freed since then.
@@ -138,7 +167,7 @@ class Mesh {
   }
   void start_vertex(uint32_t v);
   bool restore_rings(StateReader& from);
-  void grow(uint32_t slots);
+  void grow(uint64_t slots);
   void carry_rings(const Vector<uint32_t>& order, Mesh& to, const Executor& executor) const;
   void set_valence(uint32_t v, uint32_t valence);
   uint32_t& column(uint32_t v, uint32_t k) {

@@ -28,9 +28,10 @@ Status refused(const std::string& message) {
 // Says what is wrong with a mesh that plc_check calls invalid, the root of the trouble first.
 class Complaint {
  public:
-  Complaint(const double* xyz, size_t vertex_count, const uint32_t* abc, size_t face_count,
-            const Executor& executor)
+  Complaint(const double* xyz, const double* told, size_t vertex_count, const uint32_t* abc,
+            size_t face_count, const Executor& executor)
       : xyz_(xyz),
+        told_(told),
         abc_(abc),
         vertex_count_(vertex_count),
         face_count_(face_count),
@@ -62,7 +63,8 @@ class Complaint {
   }
 
  private:
-  const double* point(uint32_t v) const { return xyz_ + 3 * static_cast<size_t>(v); }
+  // As the caller knows it.
+  const double* point(size_t v) const { return told_ + 3 * v; }
 
   static std::string at(double x, double y, double z) {
     char line[96];
@@ -71,7 +73,7 @@ class Complaint {
   }
 
   std::string vertex(size_t v) const {
-    const double* p = xyz_ + 3 * v;
+    const double* p = point(v);
     return std::to_string(v) + " " + at(p[0], p[1], p[2]);
   }
 
@@ -160,20 +162,20 @@ class Complaint {
                                 : ", whose faces must be turned outward");
   }
 
-  const double* xyz_;
+  const double *xyz_, *told_;
   const uint32_t* abc_;
   size_t vertex_count_, face_count_;
   const Executor& executor_;
 };
 
-Status check_input(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
-                   const char* prefix, const Executor& executor) {
+Status check_input(const double* xyz, const double* told, int64_t vertex_count, const uint32_t* abc,
+                   int64_t face_count, const char* prefix, const Executor& executor) {
   plc_check check{};
   if (Status s = check_mesh(xyz, vertex_count, abc, face_count, executor, check); !s.ok()) {
     return {s.code(), "mesh: " + s.message()};
   }
   if (check.valid == 1) return {};
-  const Complaint complaint(xyz, static_cast<size_t>(vertex_count), abc,
+  const Complaint complaint(xyz, told, static_cast<size_t>(vertex_count), abc,
                             static_cast<size_t>(face_count), executor);
   return refused(prefix + complaint.of(check));
 }
@@ -220,9 +222,11 @@ Status check_range(const double* xyz, size_t vertex_count, const FaceRings& ring
 }  // namespace
 
 Status import_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
-                   const Executor& executor, Mesh& mesh) {
+                   const Executor& executor, Mesh& mesh, const double* told) {
+  if (told == nullptr) told = xyz;
   if (Status s = check_valences(vertex_count, abc, face_count); !s.ok()) return s;
-  if (Status s = check_input(xyz, vertex_count, abc, face_count, "mesh: ", executor); !s.ok()) {
+  if (Status s = check_input(xyz, told, vertex_count, abc, face_count, "mesh: ", executor);
+      !s.ok()) {
     return s;
   }
   const auto vertices = static_cast<size_t>(vertex_count);
@@ -239,7 +243,7 @@ Status import_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc,
     }
   }
   if (!std::equal(back.begin(), back.end(), xyz)) {
-    if (Status s = check_input(back.data(), vertex_count, abc, face_count,
+    if (Status s = check_input(back.data(), told, vertex_count, abc, face_count,
                                "mesh: after rounding to single precision: ", executor);
         !s.ok()) {
       return s;

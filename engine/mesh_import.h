@@ -16,9 +16,10 @@ namespace plc {
 // faces, out of range, open, not manifold, inconsistently oriented, inside out (walls of
 // cavities: outside out), faces of zero area, self-intersecting - or become so by the rounding of
 // coordinates to float - or with more vertices or edges at a vertex than ids have room for. One
-// line that says what is wrong, how often and where first, in the ids and coordinates given.
+// line that says what is wrong, how often and where first, in the ids given and at the places of
+// `told`: three values per vertex as the caller's user knows them; NULL: xyz.
 // kInvalidArgument for counts below 0 and NULL. The same for any executor.
 Status import_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
-                   const Executor& executor, Mesh& mesh);
+                   const Executor& executor, Mesh& mesh, const double* told = nullptr);
 
 }  // namespace plc

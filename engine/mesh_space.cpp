@@ -1,5 +1,7 @@
 #include "engine/mesh_space.h"
 
+#include "engine/constants.h"
+
 namespace plc {
 
 MeshSpace mesh_space(const Pyramid& pyramid, int h, Anisotropy anisotropy) {
@@ -15,6 +17,20 @@ MeshSpace mesh_space(const Pyramid& pyramid, int h, Anisotropy anisotropy) {
   space.metric = {static_cast<float>(metric[0]), static_cast<float>(metric[1]),
                   static_cast<float>(metric[2])};
   return space;
+}
+
+double level_delta(const Pyramid& pyramid, int h, Anisotropy anisotropy) {
+  const PyramidLevel& level = pyramid.levels[static_cast<size_t>(h)];
+  double unit = level.unit / pyramid.levels[0].unit;
+  if (anisotropy == Anisotropy::kPhysical) {
+    double cubes =
+        level.voxel[0] / level.unit * (level.voxel[1] / level.unit) * (level.voxel[2] / level.unit);
+    while (cubes > kCubesPerVoxel) {
+      cubes /= 8;
+      unit *= 2;
+    }
+  }
+  return unit / kUnitPerDelta;
 }
 
 void change_space(Mesh& mesh, const MeshSpace& from, const MeshSpace& to) {

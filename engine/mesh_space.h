@@ -28,6 +28,12 @@ struct MeshSpace {
 // constraints and the hash, which measure in them, need not know.
 MeshSpace mesh_space(const Pyramid& pyramid, int h, Anisotropy anisotropy);
 
+// delta of level h, in mesh units: U_h / kUnitPerDelta, so that U_h / delta_h is the same on every
+// level, within (14). Where the mesh lives in millimetres it would be as small as the shortest side
+// of a voxel everywhere, and a long voxel have any number of vertices: there U_h is doubled until a
+// voxel has at most kCubesPerVoxel cubes of it.
+double level_delta(const Pyramid& pyramid, int h, Anisotropy anisotropy);
+
 // Moves the mesh from one space into another; positions and velocities.
 void change_space(Mesh& mesh, const MeshSpace& from, const MeshSpace& to);
 

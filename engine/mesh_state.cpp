@@ -52,7 +52,7 @@ bool Mesh::restore(StateReader& from) {
   from.read(slots);
   uint32_t created = 0;
   from.read(created);
-  from.demand(delta > 0 && std::isfinite(delta) && slots <= from.left());
+  from.demand(delta > 0 && std::isfinite(delta) && slots <= from.left() && slots <= most_vertices);
   if (!from.ok()) return false;
   grow(slots);
   created_ = created;

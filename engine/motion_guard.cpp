@@ -1,5 +1,8 @@
 #include "engine/motion_guard.h"
 
+#include <algorithm>
+#include <cassert>
+
 #include "engine/blocks.h"
 #include "engine/constants.h"
 #include "kernels/ring_forces.h"
@@ -8,6 +11,8 @@
 namespace plc {
 
 void MotionGuard::find_folds(const Vector<uint32_t>& blocks) {
+  assert(std::is_sorted(blocks.begin(), blocks.end()));
+  assert(blocks.empty() || blocks.back() < mesh_.padded() / kRingLanes);
   folds_.resize_uninitialized(mesh_.padded());
   const Streams3& n = mesh_.normal;
   run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {

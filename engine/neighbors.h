@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 
 #include "pyramid/memory.h"
@@ -13,8 +14,14 @@ class Neighbors {
   uint32_t size() const { return size_; }
   uint32_t* data() { return size_ <= kInline ? inline_.data() : heap_.data(); }
   const uint32_t* data() const { return size_ <= kInline ? inline_.data() : heap_.data(); }
-  uint32_t operator[](uint32_t k) const { return data()[k]; }
-  uint32_t& operator[](uint32_t k) { return data()[k]; }
+  uint32_t operator[](uint32_t k) const {
+    assert(k < size_);
+    return data()[k];
+  }
+  uint32_t& operator[](uint32_t k) {
+    assert(k < size_);
+    return data()[k];
+  }
   const uint32_t* begin() const { return data(); }
   const uint32_t* end() const { return data() + size_; }
 
@@ -42,12 +49,14 @@ class Neighbors {
   }
   // v becomes element k.
   void insert(uint32_t k, uint32_t v) {
+    assert(k <= size_);
     resize(size_ + 1);
     uint32_t* d = data();
     std::copy_backward(d + k, d + size_ - 1, d + size_);
     d[k] = v;
   }
   void erase(uint32_t k) {
+    assert(k < size_);
     uint32_t* d = data();
     std::copy(d + k + 1, d + size_, d + k);
     resize(size_ - 1);

@@ -88,6 +88,25 @@ Status check_choices(const plc_parameters& p) {
         "a plc_anisotropy"}});
 }
 
+// An object that the surroundings of the image belong to has no end: its surface would grow for
+// ever.
+Status check_surroundings(const plc_parameters& p) {
+  if (std::isnan(p.iso) || p.force == PLC_FORCE_GRADIENT) return {};
+  const auto outside = [&](double iso) {
+    return p.inside_below == 0 ? p.pad_value < iso : p.pad_value > iso;
+  };
+  const std::string pad = "pad value " + text(p.pad_value) + ": ";
+  if (!outside(p.iso)) {
+    return {ErrorCode::kInvalidArgument, pad + "on the object's side of iso " + text(p.iso)};
+  }
+  for (int h = 0; h < p.level_iso_count; ++h) {
+    if (outside(p.level_iso[h])) continue;
+    return {ErrorCode::kInvalidArgument,
+            pad + "on the object's side of level iso-value " + text(p.level_iso[h])};
+  }
+  return {};
+}
+
 }  // namespace
 
 Status check_parameters(const plc_parameters& p) {
@@ -146,8 +165,9 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
     return {ErrorCode::kInvalidArgument, "iso " + text(p.iso) + ": outside the image's range " +
                                              text(range.low) + " .. " + text(range.high)};
   }
-  const Window window = std::isnan(p.iso) ? Window{range.low, range.high, range.low}
-                                          : derive_window(volume, range, p.iso, above, executor);
+  const DerivedWindow window = std::isnan(p.iso)
+                                   ? DerivedWindow{{range.low, range.high}, range.low}
+                                   : derive_window(volume, range, p.iso, above, executor);
   background = window.background;
   if (std::isnan(p.window_low)) p.window_low = window.low;
   if (std::isnan(p.window_high)) p.window_high = window.high;
@@ -169,6 +189,7 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
     }
   }
   if (std::isnan(p.pad_value)) p.pad_value = above ? p.window_low : p.window_high;
+  if (Status s = check_surroundings(p); !s.ok()) return s;
   const int deepest = max_levels(padded_dims(volume.dims, kPadVoxels), p.reduction);
   if (p.levels < 0 && p.level_iso_count > 0) p.levels = p.level_iso_count - 1;
   if (p.levels < 0) p.levels = std::min(3, deepest);
@@ -176,7 +197,9 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
 }
 
 double level_iso_bound(const plc_parameters& p, double background) {
-  return normalised(p, background + kLevelIsoMargin * (p.iso - background));
+  const double surroundings =
+      p.inside_below == 0 ? std::max(background, p.pad_value) : std::min(background, p.pad_value);
+  return normalised(p, surroundings + kLevelIsoMargin * (p.iso - surroundings));
 }
 
 PyramidSpec pyramid_spec(const plc_parameters& p) {

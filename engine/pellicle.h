@@ -40,9 +40,10 @@
 #include <stdint.h>
 
 #define PLC_VERSION_MAJOR 0
-#define PLC_VERSION_MINOR 2
+#define PLC_VERSION_MINOR 3
 #define PLC_VERSION_PATCH 0
-/* Comparable: later versions are larger. */
+/* Comparable: later versions are larger. Below 1.0 hosts are to be built with the MAJOR.MINOR that
+ * they run with; 0.3 turned level_iso of plc_parameters round. */
 #define PLC_VERSION (PLC_VERSION_MAJOR * 1000000 + PLC_VERSION_MINOR * 1000 + PLC_VERSION_PATCH)
 
 #if defined(_WIN32)
@@ -66,7 +67,7 @@ typedef enum plc_status PLC_INT {
   PLC_INVALID_DATA = 2,     /* the image or mesh cannot be used */
   PLC_OUT_OF_MEMORY = 3,
   PLC_CANCELLED = 4, /* a callback asked to stop */
-  PLC_INTERNAL = 5   /* a bug of the engine, caught before it did harm */
+  PLC_INTERNAL = 5 /* a bug of the engine, caught before it did harm; the message tells the cause */
 } plc_status;
 
 typedef enum plc_simd PLC_INT {
@@ -175,7 +176,7 @@ typedef struct plc_image {
   double spacing[3];  /* mm between voxel centres, 1e-30 .. 1e30 */
   double origin[3];   /* LPS position of the centre of voxel (0,0,0), mm, at most 1e30 */
   double direction[9]; /* row-major, columns are the axes of the image in LPS (as ITK): of length 1
-                          within 1 %, not in a plane */
+                          within 1 %, not in a plane; sheared ones are fine, seeds lean with them */
 } plc_image;
 
 /* Spacing 1, origin 0, identity direction, no gaps, no voxels. */
@@ -235,7 +236,8 @@ typedef enum plc_bound PLC_INT {
 } plc_bound;
 
 typedef enum plc_anisotropy PLC_INT {
-  PLC_ANISOTROPY_PHYSICAL = 1, /* method 1 of 4.4: the mesh lives in mm */
+  PLC_ANISOTROPY_PHYSICAL = 1, /* method 1 of 4.4: the mesh lives in mm; coarser than the
+                                  shortest side of a voxel where one has more than 8 cubes of it */
   PLC_ANISOTROPY_VOXEL = 2,    /* method 2 of 4.4: the mesh lives in voxel proportions */
   PLC_ANISOTROPY_METRIC = 3    /* method 3 of 4.4: in those of each level, the forces in mm */
 } plc_anisotropy;
@@ -247,10 +249,12 @@ typedef struct plc_parameters {
   /* what to extract */
   double iso; /* in the image's units, within its range; NAN: not set, for PLC_FORCE_GRADIENT */
   int inside_below;                 /* 0: the object is where the image is >= iso; 1: <= iso */
-  double level_iso[PLC_MAX_LEVELS]; /* pi_I per level, [0] for I_0, in the image's units */
+  double level_iso[PLC_MAX_LEVELS]; /* pi_I per level, coarse to fine, in the image's units;
+                                       since 0.3: before, I_0 came first */
   int level_iso_count;              /* 0: derived; else levels + 1 */
   double window_low, window_high;   /* image units mapped to 0 and 1; NAN: derived */
-  double pad_value;                 /* what surrounds the image; NAN: the outside end of window */
+  double pad_value; /* what surrounds the image, not on the object's side of any iso-value (but for
+                       PLC_FORCE_GRADIENT); NAN: the outside end of window */
   plc_feature feature;
   double feature_sigma; /* of the Gaussian, mm, >= 0; 0: none */
   /* the pyramid */
@@ -367,12 +371,15 @@ typedef struct plc_extras {
   void* level_user;
   plc_force_fn force;
   void* force_user;
-  plc_space space;       /* of all places below and of force */
+  plc_space space;       /* of all places below and of force.
+                            Seeds, attachments and pins lie within the image: no more than half a
+                            voxel from the outermost centres; else PLC_INVALID_ARGUMENT */
   const plc_seed* seeds; /* PLC_INIT_SEEDS: apart from each other, 1.15 delta or more in radius;
-                            none beyond the image by four diagonals of that */
+                            none reaches beyond the image by four diagonals of that */
   int64_t seed_count;
   const plc_image* mask;  /* PLC_INIT_MASK: as many voxels as the image; where not 0: the object */
-  const double* mesh_xyz; /* PLC_INIT_MESH: closed, oriented, embedded; 3 * mesh_vertex_count */
+  const double* mesh_xyz; /* PLC_INIT_MESH: closed, oriented, embedded, none beyond the image by
+                             four diagonals of that; 3 * mesh_vertex_count */
   int64_t mesh_vertex_count;
   const uint32_t* mesh_abc; /* counter-clockwise seen from outside; 3 * mesh_face_count */
   int64_t mesh_face_count;
@@ -389,7 +396,10 @@ PLC_API void plc_extras_defaults(plc_extras* extras);
 
 /* PyramidalRecoverShape (fig. 13). extras may be NULL. On any status but PLC_OK *surface is NULL.
  * The surface is closed, oriented outward and free of self-intersections. Levels of the pyramid are
- * freed as the surface leaves them: the least memory. */
+ * freed as the surface leaves them: the least memory. What it will cost is estimated before it
+ * starts and told to log: as a warning where the surface would have more vertices than the image
+ * has voxels, as PLC_OUT_OF_MEMORY where not even a quarter of it would fit the memory limit.
+ * PLC_INVALID_DATA where forces drive the surface away from the image without end. */
 PLC_API plc_status plc_extract(plc_context* context, const plc_image* image,
                                const plc_parameters* parameters, const plc_extras* extras,
                                plc_surface** surface);
@@ -508,6 +518,11 @@ PLC_API int64_t plc_surface_face_count(const plc_surface* surface);
  * for; PLC_INVALID_ARGUMENT where there are more. Vertices are in the engine's canonical order. */
 PLC_API plc_status plc_surface_positions(plc_context* context, const plc_surface* surface,
                                          plc_space space, float* xyz, int64_t capacity);
+/* As plc_surface_positions, in doubles: the engine's mesh, mapped to the space with no rounding to
+ * floats in it, which makes faces meet where the surface lies millions of voxels away from the
+ * space's origin. */
+PLC_API plc_status plc_surface_positions_f64(plc_context* context, const plc_surface* surface,
+                                             plc_space space, double* xyz, int64_t capacity);
 /* abc: 3 * face_count indices, counter-clockwise seen from outside in the given space. */
 PLC_API plc_status plc_surface_faces(plc_context* context, const plc_surface* surface,
                                      plc_space space, uint32_t* abc, int64_t capacity);

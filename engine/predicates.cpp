@@ -8,38 +8,10 @@
 
 #include <algorithm>
 
+#include "pyramid/two_doubles.h"
+
 namespace plc {
 namespace {
-
-struct Two {
-  double hi, lo;  // hi + lo exactly, hi the rounded result
-};
-
-Two two_sum(double a, double b) {
-  const double hi = a + b;
-  const double virtual_b = hi - a;
-  return {hi, (a - (hi - virtual_b)) + (b - virtual_b)};
-}
-
-// Requires |a| >= |b| or a == 0.
-Two fast_two_sum(double a, double b) {
-  const double hi = a + b;
-  return {hi, b - (hi - a)};
-}
-
-// Dekker's splitting: std::fma is a slow library call where the target has no such instruction.
-Two split(double a) {
-  constexpr double kSplitter = 134217729.0;  // 2^27 + 1
-  const double c = kSplitter * a;
-  const double hi = c - (c - a);
-  return {hi, a - hi};
-}
-
-Two two_product(double a, double b) {
-  const double hi = a * b;
-  const Two s = split(a), t = split(b);
-  return {hi, s.lo * t.lo - (((hi - s.hi * t.hi) - s.lo * t.hi) - s.hi * t.lo)};
-}
 
 template <int N>
 struct Expansion {
@@ -53,11 +25,11 @@ struct Expansion {
 
 // a d - b c. Two expansions of two components, added by growing (theorem 12).
 Expansion<4> minor2(double a, double b, double c, double d) {
-  const Two p = two_product(a, d), q = two_product(b, c);
-  const Two s0 = two_sum(p.lo, -q.lo);
-  const Two s1 = two_sum(p.hi, s0.hi);
-  const Two t1 = two_sum(s1.lo, -q.hi);
-  const Two t2 = two_sum(s1.hi, t1.hi);
+  const TwoDoubles p = two_product(a, d), q = two_product(b, c);
+  const TwoDoubles s0 = two_sum(p.lo, -q.lo);
+  const TwoDoubles s1 = two_sum(p.hi, s0.hi);
+  const TwoDoubles t1 = two_sum(s1.lo, -q.hi);
+  const TwoDoubles t2 = two_sum(s1.hi, t1.hi);
   Expansion<4> h;
   h.push(s0.lo);
   h.push(t1.lo);
@@ -70,11 +42,11 @@ template <int N>
 Expansion<2 * N> scale(const Expansion<N>& e, double b) {
   Expansion<2 * N> h;
   if (e.n == 0 || b == 0) return h;
-  Two q = two_product(e.c[0], b);
+  TwoDoubles q = two_product(e.c[0], b);
   h.push(q.lo);
   for (int i = 1; i < e.n; ++i) {
-    const Two t = two_product(e.c[i], b);
-    const Two s = two_sum(q.hi, t.lo);
+    const TwoDoubles t = two_product(e.c[i], b);
+    const TwoDoubles s = two_sum(q.hi, t.lo);
     h.push(s.lo);
     q = fast_two_sum(t.hi, s.hi);
     h.push(q.lo);
@@ -95,7 +67,7 @@ Expansion<M + N> sum(const Expansion<M>& e, const Expansion<N>& f) {
   if (total == 0) return h;
   double q = next();
   for (int k = 1; k < total; ++k) {
-    const Two t = two_sum(q, next());
+    const TwoDoubles t = two_sum(q, next());
     h.push(t.lo);
     q = t.hi;
   }

@@ -65,8 +65,9 @@ void proximity_candidates(const Mesh& mesh, const SpatialHash& hash, uint32_t u,
   const Vec3 p = mesh.at(u);
   const Neighbors ring = mesh.ring(u);
   const Vec3 span{reach, reach, reach};
+  const size_t most = candidates.size() + kMostNear;
   hash.visit_box(mesh, p - span, p + span, [&](uint32_t w, Vec3 q) {
-    if (w == u || squared_distance(p, q) >= reach * reach) return;
+    if (candidates.size() == most || w == u || squared_distance(p, q) >= reach * reach) return;
     if (pending[w] == stamp && w < u) return;
     if (ring.contains(w)) return;
     if (const auto candidate = classify(mesh, ring, u, w, iteration)) {

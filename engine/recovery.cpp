@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "engine/constants.h"
+#include "engine/cost.h"
+#include "engine/face_rings.h"
 #include "engine/refinement.h"
 #include "pyramid/gradient.h"
 
@@ -82,11 +84,6 @@ void Recovery::renumber() {
   evolution_.passed("ids");
 }
 
-// U_h / delta_h is the same on every level, within (14).
-double Recovery::delta_of(int h) const {
-  return unit_of(h) / kUnitPerDelta;
-}
-
 // U_h in mesh units.
 double Recovery::unit_of(int h) const {
   return image_of(h).unit / pyramid_.levels[0].unit;
@@ -110,14 +107,16 @@ Status Recovery::start_level() {
     evolution_.passed("start");
   }
   if (mesh_.vertex_count() == 0) return leave_level();
-  adapt();
+  estimate_.start_level();
+  if (Status s = adapt(); !s.ok()) return s;
   if (Status s = build_gradient_image(); !s.ok()) return s;
   tried_ = VoxelSet();
   bool added = false;
   if (!fresh) {
     if (Status s = add_late_bubbles(added); !s.ok()) return s;
   }
-  start_round(0);
+  late_iterations_ = 0;
+  start_round(0, false);
   return {};
 }
 
@@ -171,11 +170,12 @@ Status Recovery::build_gradient_image() {
 // Figure 12, first loop: refine until the density fits the image. With rho = sqrt 3 that is one
 // refinement per level; for other factors delta is set to fit afterwards, and creations and
 // deletions do the rest.
-void Recovery::adapt() {
+Status Recovery::adapt() {
   const double start = now();
   const double target = delta_of(level_);
-  const auto steps = std::lround(std::log(mesh_.delta / target) / std::log(kRefinement));
-  for (long i = 0; i < steps; ++i) {
+  const int steps = refinements_between(mesh_.delta, target);
+  for (int i = 0; i < steps; ++i) {
+    if (uint64_t{mesh_.vertex_count()} * 3 > mesh_.most_vertices) return too_many_vertices();
     refine(mesh_, schedule_, spec_.renumbering, simd_);
     ++record().operations.refinement;
   }
@@ -186,13 +186,24 @@ void Recovery::adapt() {
   record().delta = target;
   record().seconds.topology += now() - start;
   record().seconds.total += now() - start;
+  return {};
 }
 
-void Recovery::start_round(int number) {
+void Recovery::start_round(int number, bool late) {
   round_ = {};
   round_.number = number;
+  round_.late = late;
+  estimate_.start_round();
+  const double room = most_vertices(pyramid_, level_, spec_.pad_voxels, spec_.anisotropy);
+  // Starts may lie outside.
+  round_.most_vertices = std::max(static_cast<int64_t>(std::min(room, 1.0 * mesh_.most_vertices)),
+                                  int64_t{2} * mesh_.vertex_count());
   record().converged = false;
   phase_ = Phase::kIterate;
+}
+
+int Recovery::iterations_left() const {
+  return spec_.max_iterations - (round_.late ? late_iterations_ : round_.iteration);
 }
 
 Status Recovery::iterate() {
@@ -204,16 +215,26 @@ Status Recovery::iterate() {
   if (Status s = evolution_.iterate(guide_, r.seconds, r.operations); !s.ok()) return s;
   ++r.iterations;
   ++round_.iteration;
+  if (round_.late) ++late_iterations_;
+  if (Status s = check_growth(); !s.ok()) return s;
   r.energy = energy_ = evolution_.energy();
   r.speed = evolution_.speed();
-  round_.first_energy = std::max(round_.first_energy, r.energy);
   const bool slow = spec_.calm_speed == 0 || r.speed < spec_.calm_speed;
   round_.calm = r.energy < spec_.epsilon && slow ? round_.calm + 1 : 0;
   r.converged = confirmed(round_.calm);
   estimate_progress();
   renumber_if_scattered();
-  if (r.converged || round_.iteration >= spec_.max_iterations) phase_ = Phase::kCheck;
+  if (r.converged || iterations_left() == 0) phase_ = Phase::kCheck;
   return told();
+}
+
+Status Recovery::check_growth() const {
+  if (mesh_.vertex_count() <= round_.most_vertices) return {};
+  return {ErrorCode::kInvalidData,
+          "level " + std::to_string(level_) + ": the surface has grown to " +
+              std::to_string(mesh_.vertex_count()) + " vertices, the image has room for " +
+              std::to_string(round_.most_vertices) +
+              ": its forces drive it on without end"};
 }
 
 Status Recovery::told() const {
@@ -251,11 +272,12 @@ Status Recovery::verify() {
 
 Status Recovery::end_round() {
   // What is missed on a coarse image the next finer one shows.
-  if (level_ == 0 && round_.number < kLateRounds) {
+  const bool again = round_.number < kLateRounds && late_iterations_ < spec_.max_iterations;
+  if (level_ == 0 && again) {
     bool added = false;
     if (Status s = add_late_bubbles(added); !s.ok()) return s;
     if (added) {
-      start_round(round_.number + 1);
+      start_round(round_.number + 1, true);
       return {};
     }
   }
@@ -272,7 +294,7 @@ Status Recovery::ask_verdict() {
   const LevelVerdict verdict = hooks_.level ? hooks_.level(record()) : LevelVerdict::kAccept;
   if (verdict == LevelVerdict::kCancel) return {ErrorCode::kCancelled, "cancelled"};
   if (verdict == LevelVerdict::kMore) {
-    start_round(round_.number + 1);
+    start_round(round_.number + 1, false);
     return {};
   }
   done_ = verdict == LevelVerdict::kStop;
@@ -290,6 +312,7 @@ Status Recovery::leave_level() {
   done_ = done_ || level_ == 0;
   phase_ = Phase::kStart;
   if (done_) {
+    progress_.fraction = 1;
     if (!mesh_.in_order()) renumber();
   } else {
     --level_;
@@ -352,23 +375,21 @@ void Recovery::renumber_if_scattered() {
   evolution_.restart();
 }
 
-// Levels cost about 3 times their predecessor, and within a level the energy falls exponentially to
-// epsilon.
 void Recovery::estimate_progress() {
-  double before = 0;
-  double all = 0;
-  for (int l = levels_; l >= 0; --l) {
-    const double cost = std::pow(kRefinement, 2 * (levels_ - l));
-    all += cost;
-    if (l > level_) before += cost;
-  }
   const LevelRecord& r = record();
-  const double own = std::pow(kRefinement, 2 * (levels_ - level_));
-  const double fallen = std::log(round_.first_energy / std::max(r.energy, 1e-30)) /
-                        std::max(1e-9, std::log(round_.first_energy / spec_.epsilon));
-  const double estimate = std::min((before + own * std::clamp(fallen, 0.0, 1.0)) / all, 1.0);
-  progress_ = {level_,   levels_, static_cast<int>(r.iterations),        mesh_.vertex_count(),
-               r.energy, r.speed, std::max(progress_.fraction, estimate)};
+  ProgressEstimate::Ahead ahead;
+  ahead.iterations = iterations_left();
+  ahead.vertices = mesh_.vertex_count();
+  ahead.finer_levels = level_;
+  ahead.calm = r.converged;
+  // Bubbles come late where they came late before.
+  const bool late = std::any_of(records_.begin(), records_.end(), [](const LevelRecord& l) {
+    return l.late.bubbles + l.late.cavities > 0;
+  });
+  ahead.again = spec_.late_bubbles && late && !round_.late;
+  const double done = estimate_.add(r.operations, r.energy / spec_.epsilon, ahead);
+  progress_ = {level_,   levels_, static_cast<int>(r.iterations),    mesh_.vertex_count(),
+               r.energy, r.speed, std::max(progress_.fraction, done)};
 }
 
 Status pyramidal_recover_shape(Pyramid pyramid, const RecoverySpec& spec, const Schedule& schedule,

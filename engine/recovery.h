@@ -11,6 +11,7 @@
 #include "engine/mesh.h"
 #include "engine/mesh_space.h"
 #include "engine/pass_observer.h"
+#include "engine/progress_estimate.h"
 #include "engine/resolution.h"
 #include "engine/schedule.h"
 #include "engine/state_io.h"
@@ -120,13 +121,15 @@ class Recovery {
     int since = 0;       // iteration in which all were woken; 0: they were not
     int not_before = 0;  // iteration in which they may be woken again
   };
-  // Of a level's evolution, until it converges or for max_iterations.
+  // Of a level's evolution, until it converges or for max_iterations, which the rounds after late
+  // bubbles share.
   struct Round {
     int number = 0;
+    bool late = false;
     int iteration = 0;
     int calm = 0;  // iterations in a row
     Confirmation confirmation;
-    double first_energy = 0;
+    int64_t most_vertices = 0;  // more are no surface of the level's image
     int repairs = 0;
   };
 
@@ -134,8 +137,9 @@ class Recovery {
   Status start_level();
   void enter(int h);
   Status build_gradient_image();
-  void adapt();
-  void start_round(int number);
+  Status adapt();
+  void start_round(int number, bool late);
+  int iterations_left() const;  // of the round
   Status iterate();
   void check();
   Status verify();
@@ -149,7 +153,8 @@ class Recovery {
   void renumber();
   void renumber_if_scattered();
   void estimate_progress();
-  double delta_of(int h) const;
+  double delta_of(int h) const { return level_delta(pyramid_, h, spec_.anisotropy); }
+  Status check_growth() const;
   double unit_of(int h) const;
   float iso_of(int h) const { return static_cast<float>(spec_.isos[static_cast<size_t>(h)]); }
   const PyramidLevel& image_of(int h) const { return pyramid_.levels[static_cast<size_t>(h)]; }
@@ -169,6 +174,7 @@ class Recovery {
   Phase phase_ = Phase::kStart;
   bool done_ = false;
   Round round_;
+  int late_iterations_ = 0;  // of the level's rounds after late bubbles
   MeshSpace space_;
   Guide guide_;
   UserConstraints user_;     // in the space of the level
@@ -176,6 +182,7 @@ class Recovery {
   VoxelSet tried_;           // voxels of the level's late bubbles
   double energy_ = 0;        // of the last iteration on any level
   RecoveryProgress progress_{};
+  ProgressEstimate estimate_;
 };
 
 // All of it: start and advance to the end.

@@ -38,7 +38,8 @@ void visit_round(Round& r, const Visit& visit) {
                   &r.confirmation.not_before, &r.repairs}) {
     visit(*n);
   }
-  visit(r.first_energy);
+  visit(r.late);
+  visit(r.most_vertices);
 }
 
 template <typename Progress, typename Visit>
@@ -58,7 +59,9 @@ void Recovery::save(StateWriter& to) const {
   add(done_);
   add(energy_);
   visit_round(round_, add);
+  add(late_iterations_);
   visit_progress(progress_, add);
+  ProgressEstimate::visit_fields(estimate_, add);
   add(static_cast<uint32_t>(records_.size()));
   for (const LevelRecord& r : records_) visit_record(r, add);
   add(tried_.has_image());
@@ -82,7 +85,9 @@ bool Recovery::restore(StateReader& from) {
   read(done_);
   read(energy_);
   visit_round(round_, read);
+  read(late_iterations_);
   visit_progress(progress_, read);
+  ProgressEstimate::visit_fields(estimate_, read);
   uint32_t records = 0;
   read(records);
   // The level that is next has no record yet.

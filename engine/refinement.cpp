@@ -225,7 +225,8 @@ void refine(Mesh& mesh, const Executor& executor, bool renumbering, SimdTarget s
   if (!mesh.in_order())
     mesh.renumber(renumbering ? morton_order(mesh, executor) : living_order(mesh), executor);
   const uint32_t old_slots = mesh.slots();
-  mesh.reserve(old_slots * 3);
+  // A vertex for each face: two per old one but for 2 (1 - genus) of each component.
+  mesh.reserve(uint64_t{old_slots} * 3);
   const FaceVertices faces = create_face_vertices(mesh, old_slots, executor);
   // The vertex of a face (v, a, b) gets its three corners and the vertices of the faces across the
   // edges; an old vertex gets the vertices of its faces.
@@ -261,6 +262,18 @@ void refine(Mesh& mesh, const Executor& executor, bool renumbering, SimdTarget s
     mesh.renumber(renumbering ? morton_order(mesh, executor) : living_order(mesh), executor);
   }
   for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.wake(v);
+}
+
+// The half-way marks between 0, 1, 2 ... refinements that lie below the ratio; a quotient of
+// logarithms would differ between C libraries.
+int refinements_between(double from, double to) {
+  int steps = 0;
+  double mark = std::sqrt(kRefinement);
+  while (from / to > mark) {
+    ++steps;
+    mark *= kRefinement;
+  }
+  return steps;
 }
 
 }  // namespace plc

@@ -15,6 +15,10 @@ namespace plc {
 void refine(Mesh& mesh, const Executor& executor, bool renumbering = true,
             SimdTarget simd = best_simd_target());
 
+// How many refinements bring delta from `from` nearest to `to`, in the ratio of both; 0 where `to`
+// is not smaller. from, to > 0.
+int refinements_between(double from, double to);
+
 // The living vertices along a Morton curve of cells of delta, ties by id.
 Vector<uint32_t> morton_order(const Mesh& mesh, const Executor& executor = SerialExecutor());
 // ... in the order of their ids.

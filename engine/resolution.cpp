@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <functional>
 #include <utility>
 
@@ -140,6 +141,7 @@ void Resolution::add_due(const Vector<uint32_t>& vertices) {
 }
 
 void Resolution::queue_violated_edges() {
+  assert(std::is_sorted(due_.list().begin(), due_.list().end()));
   edge_queue_.clear();
   const auto delta = static_cast<float>(mesh_.delta);
   flags_.resize_uninitialized(mesh_.padded());
@@ -198,6 +200,7 @@ void Resolution::resolve_edges(OperationCounts& counts) {
 }
 
 Vector<Candidate> Resolution::edge_candidates(const Vector<uint32_t>& queue) {
+  assert(std::is_sorted(queue.begin(), queue.end()) && stamp_.size() >= mesh_.slots());
   const uint32_t stamp = stamp_queue(queue);
   const auto collect = [&](size_t i, Vector<Candidate>& out) {
     const uint32_t u = queue[i];
@@ -299,11 +302,13 @@ void Resolution::apply_in_turn(const Candidate& candidate, size_t trial, Vector<
     ++counts.deferred;
     return;
   }
-  trials_.begin(footprint_);
-  if (apply(candidate, trial, counts)) {
-    trials_.end();
-    for (const uint32_t v : footprint_) stamp_[v] = round_;
-    return;
+  if (fits_neighbors(mesh_, candidate)) {
+    trials_.begin(footprint_);
+    if (apply(candidate, trial, counts)) {
+      trials_.end();
+      for (const uint32_t v : footprint_) stamp_[v] = round_;
+      return;
+    }
   }
   // The vertices stay due: the next iteration tries again.
   ++counts.refused;

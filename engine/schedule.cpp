@@ -1,32 +1,15 @@
 #include "engine/schedule.h"
 
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <chrono>
 #include <exception>
-#include <map>
 #include <mutex>
-#include <thread>
 
 #include "engine/float_environment.h"
+#include "engine/handover.h"
+#include "engine/tbb_arena.h"
 #include "engine/team.h"
 #include "pyramid/memory.h"
-
-// Under ThreadSanitizer helpers are threads of our own: it follows the synchronisation of what is
-// instrumented, and oneTBB as the system has it is not.
-#if defined(__SANITIZE_THREAD__)
-#define PLC_TASK_THREADS 1
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define PLC_TASK_THREADS 1
-#endif
-#endif
-#ifndef PLC_TASK_THREADS
-#define PLC_TASK_THREADS 0
-#endif
 
 namespace plc {
 
@@ -48,14 +31,6 @@ class FirstException {
   std::exception_ptr first_;
 };
 
-// That oneTBB has for the process: the host's to control.
-int threads_of_process() {
-  if (PLC_TASK_THREADS != 0) return 1024;
-  using Control = oneapi::tbb::global_control;
-  const size_t most = Control::active_value(Control::max_allowed_parallelism);
-  return static_cast<int>(std::min<size_t>(most, 1024));
-}
-
 // Daemon threads of a host may still compute when the process ends, and oneTBB is gone before they
 // are: it is not asked for threads any more. What this library registers is destroyed before what
 // the libraries that it needs have registered.
@@ -68,45 +43,59 @@ const struct EndOfProcess {
   }
 } end_of_process;
 
-int threads_of_caller() {
-  if (PLC_TASK_THREADS == 0) return oneapi::tbb::this_task_arena::max_concurrency();
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+// What a helper is called with.
+struct Summons {
+  std::shared_ptr<Team> team;
+  uint32_t slot;
+};
+
+void serve(size_t, void* data) {
+  take_over(data);
+  const std::unique_ptr<Summons> summons(static_cast<Summons*>(data));
+  summons->team->serve(summons->slot);
 }
+
+// A loop that oneTBB runs. Its task has two places to hand over at: where the loop begins, and
+// where the task ends.
+struct Loop {
+  const std::function<void(size_t)>& body;
+  char begin = 0, end = 0;
+
+  static void run_task(size_t i, void* data) {
+    auto& loop = *static_cast<Loop*>(data);
+    take_over(&loop.begin);
+    loop.body(i);
+    hand_over(&loop.end);
+  }
+};
 
 }  // namespace
 
 // Where threads come from: an arena of oneTBB, this schedule's own or that of whoever calls.
 class Schedule::Arena {
  public:
-  // threads: of an arena of its own; 0: the caller's.
-  explicit Arena(int threads) {
-    if (threads > 0 && PLC_TASK_THREADS == 0) {
-      own_ = std::make_unique<oneapi::tbb::task_arena>(threads);
-    }
-  }
+  // threads: as a TbbArena has them.
+  explicit Arena(int threads) : tbb_(threads) {}
   ~Arena() { leave_team(); }
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
 
   void run(int threads, size_t tasks, const std::function<void(size_t)>& body);
   // Several loops at a time, which may run others.
-  void run_wave(int threads, size_t tasks, const std::function<void(size_t)>& body);
+  void run_wave(size_t tasks, const std::function<void(size_t)>& body);
 
  private:
   void leave_team();
   void summon(uint32_t slot);
-  void run_of_tbb(size_t tasks, const std::function<void(size_t)>& body);
+  void run_tbb(size_t tasks, const std::function<void(size_t)>& body);
 
-  std::unique_ptr<oneapi::tbb::task_arena> own_;
+  TbbArena tbb_;
   std::shared_ptr<Team> team_;  // with every helper that has been summoned, and may come late
   bool in_wave_ = false;
-#if PLC_TASK_THREADS
-  std::map<uint32_t, std::thread> helpers_;
-#endif
 };
 
 void Schedule::Arena::run(int threads, size_t tasks, const std::function<void(size_t)>& body) {
-  if (in_wave_) return run_of_tbb(tasks, body);
+  if (in_wave_) return run_tbb(tasks, body);
   const auto members = static_cast<uint32_t>(threads);
   if (team_ == nullptr || team_->members() < members) {
     leave_team();
@@ -118,52 +107,32 @@ void Schedule::Arena::run(int threads, size_t tasks, const std::function<void(si
 }
 
 // Loops within loops are what oneTBB is good at.
-void Schedule::Arena::run_wave(int threads, size_t tasks, const std::function<void(size_t)>& body) {
-  if (PLC_TASK_THREADS != 0) return run(threads, tasks, body);
+void Schedule::Arena::run_wave(size_t tasks, const std::function<void(size_t)>& body) {
   if (team_ != nullptr) team_->dismiss();
   in_wave_ = true;
   const struct End {
     bool& in_wave;
     ~End() { in_wave = false; }
   } end{in_wave_};
-  run_of_tbb(tasks, body);
+  run_tbb(tasks, body);
 }
 
-void Schedule::Arena::run_of_tbb(size_t tasks, const std::function<void(size_t)>& body) {
-  // Of no group of the caller's: that one may be cancelled, and its loops then do nothing. Tasks
-  // compute as this thread does.
-  using Group = oneapi::tbb::task_group_context;
-  Group group(Group::isolated, Group::default_traits | Group::fp_settings);
-  const auto loop = [&] {
-    oneapi::tbb::parallel_for(
-        size_t{0}, tasks, [&](size_t i) { body(i); }, group);
-  };
-  if (own_ != nullptr) {
-    own_->execute(loop);
-  } else {
-    // A thread that waits for the loop takes no other work of the host's meanwhile, which might
-    // come back to this context.
-    oneapi::tbb::this_task_arena::isolate(loop);
-  }
+void Schedule::Arena::run_tbb(size_t tasks, const std::function<void(size_t)>& body) {
+  Loop loop{body};
+  hand_over(&loop.begin);
+  tbb_.run(tasks, Loop::run_task, &loop);
+  take_over(&loop.end);
 }
 
 // One that cannot be had is done without.
 void Schedule::Arena::summon(uint32_t slot) {
-  const auto serve = [team = team_, slot] { team->serve(slot); };
   const std::lock_guard<std::mutex> lock(end_mutex);
-  if (process_ends || static_cast<int>(slot) >= threads_of_process()) return;
+  if (process_ends || static_cast<int>(slot) >= TbbArena::threads_of_process()) return;
   try {
-#if PLC_TASK_THREADS
-    std::thread& helper = helpers_[slot];
-    if (helper.joinable()) helper.join();
-    helper = std::thread(serve);
-#else
-    if (own_ != nullptr) {
-      own_->enqueue(serve);
-    } else {
-      oneapi::tbb::this_task_arena::enqueue(serve);
-    }
-#endif
+    auto summons = std::make_unique<Summons>(Summons{team_, slot});
+    hand_over(summons.get());
+    tbb_.enqueue(serve, summons.get());
+    (void)summons.release();  // serve has it
   } catch (const std::exception&) {
   }
 }
@@ -171,24 +140,20 @@ void Schedule::Arena::summon(uint32_t slot) {
 void Schedule::Arena::leave_team() {
   if (team_ == nullptr) return;
   team_->dismiss();
-#if PLC_TASK_THREADS
-  for (auto& [slot, helper] : helpers_) helper.join();
-  helpers_.clear();
-#endif
   team_->wait_for_helpers();
 }
 
 Schedule::Schedule(const Threads& threads) : threads_(threads) {
   if (threads.parallel_for != nullptr) return;
   // More than oneTBB has it does not give, and would say so on stderr.
-  threads_.count = std::min(threads.count, threads_of_process());
+  threads_.count = std::min(threads.count, TbbArena::threads_of_process());
   if (threads_.count != 1) arena_ = std::make_unique<Arena>(threads_.count);
 }
 Schedule::~Schedule() = default;
 
 int Schedule::threads() const {
   if (threads_.parallel_for != nullptr) return 0;
-  return threads_.count != 0 ? threads_.count : threads_of_caller();
+  return threads_.count != 0 ? threads_.count : TbbArena::threads_of_caller();
 }
 
 void Schedule::run(size_t tasks, const std::function<void(size_t)>& body) const {
@@ -215,7 +180,7 @@ void Schedule::run(size_t tasks, const std::function<void(size_t)>& body, bool w
   if (arena_ == nullptr) {
     run_on_host(tasks, guarded);
   } else if (wave) {
-    arena_->run_wave(most, tasks, guarded);
+    arena_->run_wave(tasks, guarded);
   } else {
     arena_->run(most, tasks, guarded);
   }

@@ -1,4 +1,4 @@
-// Threads: parallel loops and the task graph of a step. The only file pair that calls oneTBB.
+// Threads: parallel loops and the task graph of a step, on those of oneTBB (tbb_arena.h) or a host.
 //
 // The determinism contract: the same input and parameters give the same bits for any number of
 // threads, on any SIMD target, by GCC and Clang, run after run. It holds by construction, as long
@@ -20,9 +20,9 @@
 //              approximate reciprocal or root, no -ffast-math, no -march. A kernel has the bits of
 //              its scalar twin on every target (kernels/scalar.h), tails, padding and deleted
 //              vertices included. Of the mathematics library only what is exact or rounded
-//              correctly (sqrt, floor): the rest differs between C libraries. None of it is in the
-//              step; around it are pow(3, 1/4) of initial_surface.cpp, exp of gaussian.cpp, and log
-//              of recovery.cpp, which is rounded to an integer.
+//              correctly (sqrt, floor): the rest differs between C libraries, and processors. The
+//              exponential function is our own (exponential.h). Measures of a finished surface
+//              (angles, curvatures, geodesic distances) and the progress told may use the rest.
 //   State      Sleep, wake, due and risk depend on the bits of the mesh's streams, and on what the
 //              passes before have done with them, alone. Buffers that are not written whole start
 //              as zeros (Buffer::resize).
@@ -31,9 +31,9 @@
 // names the one that rounds differently; tests/test_determinism.cpp has recorded hashes of runs
 // that take the parallel path, over threads and targets, and compares two runs pass by pass: the
 // first that differs is named, "iteration 17, pass stage 2: velocity" (pass_observer.h,
-// tests/sample_traces.h); tests/test_ct_determinism.sh extracts a head CT; tools/compilers runs
-// the recorded hashes with Clang. A change that changes results on purpose records them anew, and
-// says so.
+// tests/sample_traces.h); tests/test_ct_determinism.sh extracts a head CT; tests/test_c_library.sh
+// names the file that calls what is not exact; tools/compilers runs the recorded hashes with Clang.
+// A change that changes results on purpose records them anew, and says so.
 #pragma once
 #include <cstdint>
 #include <functional>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 
@@ -133,6 +134,7 @@ void Sleep::find_rim() {
 }
 
 void Sleep::observe() {
+  assert(calm_.size() == mesh_.padded() / kRingLanes);  // choose() came before
   if (calm_speed_ == 0) return;
   const float along = calm_speed_ * static_cast<float>(mesh_.delta);
   const float slide = kCalmSlide * along;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 #include "engine/blocks.h"
 #include "engine/constants.h"
@@ -19,6 +20,7 @@ constexpr size_t kBlock = 1024;  // vertices per task
 }  // namespace
 
 void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, float slack) {
+  assert(cell > 0 && slack >= 0);
   inverse_quantum_ = static_cast<float>(1 << kQuantaShift) / cell;
   slack_ = slack;
   const uint32_t n = mesh.slots();
@@ -93,6 +95,7 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
 }
 
 void SpatialHash::insert(uint32_t v, Vec3 p) {
+  assert(!late_head_.empty());  // it has been built
   const FourInts q = quanta(p);
   if (!refresh(v, q)) enter(v, bucket(q));
 }

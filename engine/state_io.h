@@ -1,16 +1,19 @@
 // The state of a run as bytes: written and read in the same order, field by field.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
-
-#include "pyramid/buffer.h"
 
 namespace plc {
 
 // Values as they lie in memory: for the library's own version and byte order (api_run_state.cpp).
 class StateWriter {
  public:
+  // Counts what would be written.
+  StateWriter() = default;
+  // to: room for as much as was counted.
+  explicit StateWriter(uint8_t* to) : to_(to) {}
   template <typename T>
   void add(const T& value) {
     static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
@@ -28,15 +31,18 @@ class StateWriter {
     add(static_cast<uint64_t>(count));
     add_bytes(values.data(), count * sizeof(*values.data()));
   }
-  const Buffer<uint8_t>& bytes() const { return bytes_; }
+  // Bytes so far.
+  size_t size() const { return size_; }
+  // The first of them; null where they are only counted.
+  const uint8_t* data() const { return to_; }
 
  private:
   void add_bytes(const void* data, size_t size) {
-    const size_t at = bytes_.size();
-    bytes_.resize_uninitialized(at + size);
-    if (size != 0) std::memcpy(bytes_.data() + at, data, size);
+    if (to_ != nullptr && size != 0) std::memcpy(to_ + size_, data, size);
+    size_ += size;
   }
-  Buffer<uint8_t> bytes_;
+  uint8_t* to_ = nullptr;
+  size_t size_ = 0;
 };
 
 // Bytes from elsewhere: nothing beyond their end is read, no more is allocated than there are. What

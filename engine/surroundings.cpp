@@ -1,6 +1,7 @@
 #include "engine/surroundings.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "engine/blocks.h"
 #include "engine/constants.h"
@@ -53,6 +54,8 @@ void Surroundings::search_near(const Vector<uint32_t>& all, const SpatialHash& h
 }
 
 void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted) {
+  assert(std::is_sorted(due.begin(), due.end()));
+  assert(due.empty() || due.back() < mesh_.slots());
   const float reach =
       (wanted == Wanted::kNear ? kMinApart : kRiskReach) * static_cast<float>(mesh_.delta);
   const Vec3 span{reach, reach, reach};
@@ -62,6 +65,7 @@ void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash, 
     Task& task = tasks_[index];
     task.too_near.clear();
     task.at_risk.clear();
+    task.distinct_at_risk = 0;
     const Spares<Scratch>::Lent lent = scratches_.lend();
     Scratch& scratch = *lent;
     for (size_t i = begin; i < end;) {
@@ -149,7 +153,8 @@ void Surroundings::search_group(const uint32_t* due, size_t count, Wanted wanted
 
 // The pairs in which v has the smaller id; the other one sees the others.
 void Surroundings::list_near(uint32_t v, uint32_t hits, const Scratch& scratch, Task& task) const {
-  for (uint32_t k = 0; k < hits; ++k) {
+  const size_t most = task.too_near.size() + kMostNear;
+  for (uint32_t k = 0; k < hits && task.too_near.size() < most; ++k) {
     const uint32_t w = scratch.around.ids[scratch.hits[k]];
     if (w > v && mesh_.alive(w) && !mesh_.adjacent(v, w)) task.too_near.push_back({v, w});
   }
@@ -160,10 +165,11 @@ void Surroundings::judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task
   const float near = kMinApart * static_cast<float>(mesh_.delta);
   const ClosedRing ring(mesh_, v);
   scratch.turned.clear();
+  const size_t most = task.too_near.size() + kMostNear;
   for (uint32_t k = 0; k < hits; ++k) {
     const uint32_t w = scratch.around.ids[scratch.hits[k]];
     if (ring.contains(w) || !mesh_.alive(w)) continue;
-    if (squared_distance(p, mesh_.at(w)) < near * near) {
+    if (squared_distance(p, mesh_.at(w)) < near * near && task.too_near.size() < most) {
       task.too_near.push_back({std::min(v, w), std::max(v, w)});
     }
     if (dot(n, mesh_.normal.at(w)) <= kRiskDot) scratch.turned.push_back(w);
@@ -182,6 +188,12 @@ void Surroundings::list_risk(uint32_t v, const Vector<uint32_t>& turned, Task& t
     }
   }
   if (task.at_risk.size() > before) task.at_risk.push_back(v);
+  // Where much is near, it is so to many.
+  constexpr size_t kMany = 1 << 14;
+  if (task.at_risk.size() < std::max(kMany, 2 * task.distinct_at_risk)) return;
+  std::sort(task.at_risk.begin(), task.at_risk.end());
+  task.at_risk.erase(std::unique(task.at_risk.begin(), task.at_risk.end()), task.at_risk.end());
+  task.distinct_at_risk = task.at_risk.size();
 }
 
 }  // namespace plc

@@ -47,6 +47,7 @@ class Surroundings {
   struct Task {
     Vector<VertexPair> too_near;
     Vector<uint32_t> at_risk;
+    size_t distinct_at_risk = 0;  // when they were last told apart
   };
   // What it works with.
   struct Scratch {

@@ -1,6 +1,7 @@
 #include "engine/tiny_components.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "engine/constants.h"
@@ -38,6 +39,7 @@ bool is_tetrahedron(const Mesh& mesh, uint32_t v) {
 }
 
 void delete_tetrahedron(Mesh& mesh, uint32_t v) {
+  assert(is_tetrahedron(mesh, v));
   const Neighbors ring = mesh.ring(v);
   for (const uint32_t w : ring) mesh.destroy(w);
   mesh.destroy(v);

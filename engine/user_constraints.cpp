@@ -10,7 +10,9 @@ namespace {
 float squared_millimetres(const UserConstraints& user, Vec3 a) {
   const auto& s = user.millimetres;
   const Vec3 scaled{a.x * s[0], a.y * s[1], a.z * s[2]};
-  return dot(scaled, scaled);
+  const auto& c = user.cosines;
+  return dot(scaled, scaled) +
+         2 * (c[0] * scaled.x * scaled.y + c[1] * scaled.y * scaled.z + c[2] * scaled.z * scaled.x);
 }
 
 // The attachments that reach into the box of the vertices begin .. end-1: these are near each other
@@ -31,7 +33,9 @@ std::vector<Attachment> reaching(const UserConstraints& user, const Packed* posi
     };
     const Vec3 away{outside(a.place.x, low.x, high.x), outside(a.place.y, low.y, high.y),
                     outside(a.place.z, low.z, high.z)};
-    if (squared_millimetres(user, away) < a.radius * a.radius) near.push_back(a);
+    // Where axes lean the nearest point of the box may be another one: all are taken.
+    const bool leaning = user.cosines != std::array<float, 3>{};
+    if (leaning || squared_millimetres(user, away) < a.radius * a.radius) near.push_back(a);
   }
   return near;
 }

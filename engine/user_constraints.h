@@ -34,6 +34,8 @@ struct UserConstraints {
   std::vector<Pin> pins;
   UserForce force;
   std::array<float, 3> millimetres{1, 1, 1};  // of a mesh unit on each axis
+  // Of the angles between the axes x and y, y and z, z and x; 0 unless the image is sheared.
+  std::array<float, 3> cosines{};
 
   // The most that attachments add to the stiffness of a vertex: see attach().
   float stiffness() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 
@@ -43,6 +44,7 @@ class VoxelSet {
   }
   void erase(const Voxel& v) {
     const Bit at = bit_of(v);
+    assert(at.block < blocks_.size());
     uint64_t* words = blocks_[at.block].data();
     if (words != nullptr) words[at.word] &= ~at.mask;
   }
@@ -55,6 +57,7 @@ class VoxelSet {
   // visit(x) for the voxels of a row with first <= x < end, x growing.
   template <typename Visit>
   void visit_row(int32_t y, int32_t z, int32_t first, int32_t end, const Visit& visit) const {
+    assert(first >= 0 && end <= static_cast<int32_t>(width_) && y >= 0 && z >= 0);
     if (first >= end) return;
     const size_t begin = static_cast<size_t>(y) * width_;
     size_t i = begin + static_cast<size_t>(first);

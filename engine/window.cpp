@@ -195,8 +195,8 @@ class BoundaryHistogram {
 
 }  // namespace
 
-Window derive_window(const VolumeView& volume, const VoxelRange& range, double iso,
-                     bool inside_above, const Executor& executor) {
+DerivedWindow derive_window(const VolumeView& volume, const VoxelRange& range, double iso,
+                            bool inside_above, const Executor& executor) {
   const BoundaryHistogram histogram(volume, range, iso, inside_above, executor);
   // Never narrower than a thousandth of the range: a step that is no wider is noise.
   const double least = (range.high - range.low) * 1e-3;
@@ -205,8 +205,8 @@ Window derive_window(const VolumeView& volume, const VoxelRange& range, double i
   const double in = std::max((histogram.median(1) - iso) * sign, least) * kReachIn;
   const double below = inside_above ? out : in;
   const double above = inside_above ? in : out;
-  Window window{std::max(range.low, iso - below), std::min(range.high, iso + above),
-                histogram.median(0)};
+  DerivedWindow window{{std::max(range.low, iso - below), std::min(range.high, iso + above)},
+                       histogram.median(0)};
   // The iso-value may be an end of the range: keep it inside.
   if (window.low >= iso) window.low = iso - below;
   if (window.high <= iso) window.high = iso + above;

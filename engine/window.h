@@ -1,15 +1,15 @@
 // The grey-level window derived from the image: what is mapped to 0 and 1 around the iso-value.
 #pragma once
 #include "kernels/simd.h"
+#include "pyramid/base_image.h"
 #include "pyramid/executor.h"
 #include "pyramid/pyramid.h"
 #include "pyramid/volume.h"
 
 namespace plc {
 
-struct Window {
-  double low, high;
-  double background;  // typical value across the surface from the object
+struct DerivedWindow : Window {
+  double background = 0;  // typical value across the surface from the object
 };
 
 // Typical values on either side of the iso-surface are the medians of the voxels of the object that
@@ -17,7 +17,7 @@ struct Window {
 // iso-value by several times as much as they do, and not beyond the image's range, so that what is
 // far from the surface neither weakens (7) there nor hides thin parts of the object in the coarse
 // images. `range` is that of the image. The same for any executor.
-Window derive_window(const VolumeView& volume, const VoxelRange& range, double iso,
-                     bool inside_above, const Executor& executor);
+DerivedWindow derive_window(const VolumeView& volume, const VoxelRange& range, double iso,
+                            bool inside_above, const Executor& executor);
 
 }  // namespace plc

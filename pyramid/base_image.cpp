@@ -40,8 +40,9 @@ ImageType borrowed_type(VoxelType type) {
 // clipped.
 bool within_floats(const VolumeView& volume, const Window& window) {
   const double most = volume.type == VoxelType::kI32 ? 0x1p24 : 1e30;
-  return std::abs(window.low) < most && window.scale > 1e-30 && window.scale < 1e30 &&
-         std::abs(window.low + 1 / window.scale) < most;
+  const double scale = window.scale();
+  return std::abs(window.low) < most && scale > 1e-30 && scale < 1e30 &&
+         std::abs(window.low + 1 / scale) < most;
 }
 
 VoxelForm form_of(const VolumeView& volume, const Window& window, int64_t pad, double pad_value) {
@@ -49,7 +50,7 @@ VoxelForm form_of(const VolumeView& volume, const Window& window, int64_t pad, d
   form.type = borrowed_type(volume.type);
   form.pad = static_cast<int32_t>(pad);
   form.low = static_cast<float>(window.low);
-  form.scale = static_cast<float>(window.scale);
+  form.scale = static_cast<float>(window.scale());
   form.pad_value = voxel_value(form, static_cast<float>(pad_value));
   return form;
 }
@@ -87,7 +88,7 @@ float window_value(const VolumeView& volume, const Window& window, double value)
   if (within_floats(volume, window)) {
     return voxel_value(form_of(volume, window, 0, 0), static_cast<float>(value));
   }
-  return static_cast<float>(std::clamp((value - window.low) * window.scale, 0.0, 1.0));
+  return static_cast<float>(std::clamp((value - window.low) * window.scale(), 0.0, 1.0));
 }
 
 void make_base_image(const VolumeView& volume, const Window& window, int64_t pad, double pad_value,
@@ -116,7 +117,7 @@ void make_base_image(const VolumeView& volume, const Window& window, int64_t pad
   } else {
     const auto write = [&](size_t first, float* to) {
       kernels::normalize_voxels(simd, volume.type, voxel_address(volume, first), count, window.low,
-                                window.scale, to);
+                                window.scale(), to);
     };
     for_rows(dims, executor, values, [&](int64_t y, int64_t z, float* row) {
       write_row(volume, pad, border, y, z, write, row);

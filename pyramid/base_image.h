@@ -11,8 +11,10 @@
 namespace plc {
 
 struct Window {
-  double low = 0;    // maps to 0, as does everything below and NaN
-  double scale = 1;  // 1 / (high - low); high and everything above map to 1
+  double low = 0;   // maps to 0, as does everything below and NaN
+  double high = 1;  // maps to 1, as does everything above
+  // 0 where there is nothing between them: all maps to 0.
+  double scale() const { return low < high ? 1 / (high - low) : 0; }
 };
 
 // How the volume's own voxels are read as I_0: (v - low) scale in floats, as kernels/image.h has

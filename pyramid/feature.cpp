@@ -57,7 +57,7 @@ bool build_norm(const VolumeView& volume, double sigma_mm, const Executor& execu
   // Relative to its range, a volume loses nothing of its contrast to floats.
   const VoxelRange range = voxel_range(volume, executor, simd);
   const double width = range.high - range.low;
-  const Window window{range.low, width > 0.0 ? 1.0 / width : 0.0};
+  const Window window{range.low, range.high};
   if (sigma_mm == 0.0) {
     make_base_image(volume, window, 0, range.low, executor, simd, other.data());
   } else {

@@ -6,6 +6,7 @@
 
 #include "kernels/weighted_rows.h"
 #include "pyramid/buffer.h"
+#include "pyramid/exponential.h"
 #include "pyramid/guarded_run.h"
 
 namespace plc {
@@ -72,7 +73,7 @@ std::vector<float> gaussian_weights(double sigma) {
   double sum = 0;
   for (int64_t i = -radius; i <= radius; ++i) {
     const double place = i == 0 ? 0.0 : static_cast<double>(i) / sigma;
-    samples.push_back(std::exp(-0.5 * place * place));
+    samples.push_back(exponential(-0.5 * place * place));
     sum += samples.back();
   }
   std::vector<float> weights;

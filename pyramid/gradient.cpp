@@ -7,6 +7,7 @@
 
 #include "kernels/image_rows.h"
 #include "kernels/sobel.h"
+#include "pyramid/border.h"
 #include "pyramid/check_volume.h"
 #include "pyramid/sobel_image.h"
 
@@ -78,7 +79,11 @@ Status build_gradient(const PyramidLevel& level, const std::array<double, 3>& vo
   } catch (const std::bad_alloc&) {
     enough_memory = false;
   }
-  if (enough_memory) return {};
+  if (enough_memory) {
+    // Beyond the image nothing draws: a force there would not end.
+    visit_border(level.dims, [&](size_t voxel) { gradient[voxel] = {}; });
+    return {};
+  }
   gradient.clear();
   return {ErrorCode::kOutOfMemory, "gradient of " + voxels_text(level.dims) + ": out of memory"};
 }

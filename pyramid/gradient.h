@@ -15,6 +15,7 @@ namespace plc {
 // gradient[i] = (x, y, z, 0) at voxel i of `level`: the Sobel gradient per U_h, shortened to
 // `bound` where it is longer, divided by `bound`, so that its length lies in [0,1]. The paper
 // leaves the unit open: divided by the bound, the force has the size of (7) whatever the contrast.
+// It is 0 in the voxels at the border, and so beyond it.
 //   voxel_length: the length of a voxel along each axis in units of U_h; finite, > 0
 //   bound:        change of the image's value per U_h; finite, > 0
 // 16 bytes per voxel; besides, for a borrowed I_0, 4 while it is built. Errors: kInvalidArgument

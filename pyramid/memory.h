@@ -32,6 +32,8 @@ class Memory {
   void* allocate(size_t size, size_t alignment);
   void release(void* data, size_t size, size_t alignment) noexcept;
   int64_t now() const { return now_.load(std::memory_order_relaxed); }
+  // Until the limit; more than any machine has where there is none.
+  int64_t left() const { return limit_ == 0 ? INT64_MAX : limit_ - now(); }
   int64_t peak() const { return peak_.load(std::memory_order_relaxed); }
 
   // What buffers of this thread are allocated from; where no MemoryScope says so, the system's.

@@ -85,7 +85,7 @@ bool fill_level(const PyramidLevel& from, const Executor& executor, SimdTarget s
 }
 
 Window window_of(const PyramidSpec& spec) {
-  return {spec.window_low, 1.0 / (spec.window_high - spec.window_low)};
+  return {spec.window_low, spec.window_high};
 }
 
 void fill_base(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,

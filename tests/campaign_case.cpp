@@ -159,6 +159,8 @@ Case make_case(uint64_t seed) {
   choose_second(c);
   c.refusals.push_back({PLC_CANCELLED, "cancelled"});
   c.refusals.push_back({PLC_INVALID_DATA, "no surface: nothing in the image holds one"});
+  // Strong springs, as long as edges may be, let a mesh grow for ever.
+  c.refusals.push_back({PLC_INVALID_DATA, "its forces drive it on without end"});
   Random random = draws(seed, Part::kFault);
   if (once_in(random, 16)) choose_fault(c, random);
   return c;

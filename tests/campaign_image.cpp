@@ -178,10 +178,12 @@ void choose_iso(Case& c, Random& random) {
   const int64_t window = random.integer(0, 5);
   if (window >= 3) p.window_low = p.iso - below;
   if (window >= 4) p.window_high = p.iso + above;
-  // Beyond iso nothing outside the image would hold the surface: it grows as long as it is let.
+  // Beyond iso, or the iso-value of a level, nothing outside the image would hold the surface: that
+  // is refused.
   if (once_in(random, 20)) {
     p.pad_value = p.inside_below != 0 ? p.iso + random.uniform(0.01, 1.5) * (range.high - p.iso)
                                       : p.iso - random.uniform(0.01, 1.5) * (p.iso - range.low);
+    c.refusals.push_back({PLC_INVALID_ARGUMENT, "on the object's side of level iso-value"});
   }
   if (p.force == PLC_FORCE_GRADIENT && random.integer(0, 1) == 0) {
     p.iso = std::numeric_limits<double>::quiet_NaN();
@@ -190,12 +192,12 @@ void choose_iso(Case& c, Random& random) {
   // An explicit value for every level only where the window is known.
   if (window < 4 || p.levels < 0 || random.integer(0, 2) != 0) return;
   p.level_iso_count = p.levels + 1;
-  p.level_iso[0] = p.iso;
+  p.level_iso[p.levels] = p.iso;
   for (int h = 1; h <= p.levels; ++h) {
     // Outwards more often than inwards.
     const double inwards = random.uniform(-0.6, 0.3);
     const double up = p.inside_below != 0 ? -inwards : inwards;
-    p.level_iso[h] = p.iso + up * (up < 0 ? below : above);
+    p.level_iso[p.levels - h] = p.iso + up * (up < 0 ? below : above);
   }
 }
 

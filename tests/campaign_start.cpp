@@ -69,7 +69,7 @@ void choose_seeds(Case& c, Random& random) {
   const bool crowded = once_in(random, 10);
   if (crowded) {
     c.refusals.push_back({PLC_INVALID_ARGUMENT, "too small for level"});
-    c.refusals.push_back({PLC_INVALID_ARGUMENT, "touches the"});
+    c.refusals.push_back({PLC_INVALID_ARGUMENT, ": touches seed"});
   }
   // A half more: sizes of levels are rounded down, so that their voxels are longer.
   const double delta = 1.5 * reduction_of(c) / plc::kUnitPerDelta * coarsest(c);

@@ -1,10 +1,11 @@
-// For LD_PRELOAD: call number PELLICLE_FAIL_AT, counted from 1, of those that make, write, close or
-// rename an output file of tools/atomic_file.cpp fails as on a full disk, and so do all later
-// writes and makings; then the file PELLICLE_FAILED is made. Of a write that fails, half is written
-// before.
+// For LD_PRELOAD: call number PELLICLE_FAIL_AT, counted from 1, of those that make, write, sync,
+// close or rename an output file of tools/atomic_file.cpp, or sync a folder, fails as on a full
+// disk, and so do all later writes and makings; then the file PELLICLE_FAILED is made. Of a write
+// that fails, half is written before.
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <sys/syscall.h>
@@ -34,12 +35,29 @@ static int no_space(void) {
   return -1;
 }
 
-int mkostemp(char* name, int flags) {
-  typedef int Call(char*, int);
+// Output files are those that must not be there before.
+int open(const char* name, int flags, ...) {
+  typedef int Call(const char*, int, ...);
+  Call* const next = (Call*)dlsym(RTLD_NEXT, "open");
+  va_list rest;
+  va_start(rest, flags);
+  const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(rest, mode_t) : 0;
+  va_end(rest);
+  if ((flags & O_EXCL) == 0) return next(name, flags, mode);
   if (fails() || full) return no_space();
-  const int made = ((Call*)dlsym(RTLD_NEXT, "mkostemp"))(name, flags);
+  const int made = next(name, flags, mode);
   if (made >= 0 && made < kDescriptors) output[made] = true;
   return made;
+}
+
+int fsync(int descriptor) {
+  typedef int Call(int);
+  return fails() ? no_space() : ((Call*)dlsym(RTLD_NEXT, "fsync"))(descriptor);
+}
+
+int syncfs(int descriptor) {
+  typedef int Call(int);
+  return fails() ? no_space() : ((Call*)dlsym(RTLD_NEXT, "syncfs"))(descriptor);
 }
 
 ssize_t write(int descriptor, const void* data, size_t size) {

@@ -63,6 +63,13 @@ inline std::vector<float> positions(const plc_surface* surface, plc_space space)
   return xyz;
 }
 
+inline std::vector<double> positions_f64(const plc_surface* surface, plc_space space) {
+  const int64_t n = plc_surface_vertex_count(surface);
+  std::vector<double> xyz(static_cast<size_t>(n) * 3);
+  REQUIRE(plc_surface_positions_f64(make_context().get(), surface, space, xyz.data(), n) == PLC_OK);
+  return xyz;
+}
+
 inline std::vector<uint32_t> faces(const plc_surface* surface, plc_space space) {
   const int64_t n = plc_surface_face_count(surface);
   std::vector<uint32_t> abc(static_cast<size_t>(n) * 3);

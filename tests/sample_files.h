@@ -2,6 +2,7 @@
 #pragma once
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -67,6 +68,30 @@ inline std::string nifti(const std::vector<int16_t>& dims, int16_t datatype, int
   for (size_t i = 0; i < 12; ++i) put_at(out, 280 + 4 * i, sform[i]);
   out.replace(344, 4, std::string("n+1\0", 4));
   return out + voxels;
+}
+
+// The header of a NIfTI-2 file whose voxels of 1, 1.5 and 2.5 mm run to the right, front and head
+// from (10, 20, 30); in big endian where `big`.
+inline std::string nifti2(const std::vector<int64_t>& dims, int16_t datatype, double slope,
+                          double intercept, bool big) {
+  std::string out(544, '\0');
+  const auto put = [&](size_t at, auto value) {
+    put_at(out, at, value);
+    const auto begin = out.begin() + static_cast<std::ptrdiff_t>(at);
+    if (big) std::reverse(begin, begin + static_cast<std::ptrdiff_t>(sizeof value));
+  };
+  put(0, int32_t{540});
+  out.replace(4, 8, std::string("n+2\0\r\n\032\n", 8));
+  put(12, datatype);
+  put(16, static_cast<int64_t>(dims.size()));
+  for (size_t i = 0; i < dims.size(); ++i) put(24 + 8 * i, dims[i]);
+  put(168, int64_t{544});
+  put(176, slope);
+  put(184, intercept);
+  put(348, int32_t{2});
+  const double sform[12] = {1, 0, 0, 10, 0, 1.5, 0, 20, 0, 0, 2.5, 30};
+  for (size_t i = 0; i < 12; ++i) put(400 + 8 * i, sform[i]);
+  return out;
 }
 
 // One strip per page; format 1 unsigned, 2 signed, 3 float.

@@ -17,13 +17,13 @@ struct Ball {
 
 // An image of 40 x 24 x 24 mesh units; 1/2 on the surfaces of balls, larger inside. Voxel i lies at
 // i / scale on each axis.
-struct Scene {
+struct BallScene {
   std::array<int32_t, 3> dims{40, 24, 24};
   std::array<float, 3> scale{1, 1, 1};  // voxels per mesh unit
   std::vector<float> values;
 
   // Balls one after the other: solid, or (radius < 0) hollowed out of what is there.
-  explicit Scene(const std::vector<Ball>& balls, std::array<float, 3> voxels = {1, 1, 1})
+  explicit BallScene(const std::vector<Ball>& balls, std::array<float, 3> voxels = {1, 1, 1})
       : scale(voxels) {
     for (size_t a = 0; a < 3; ++a) {
       dims[a] = static_cast<int32_t>(static_cast<float>(dims[a]) * scale[a]);

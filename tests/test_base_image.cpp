@@ -29,9 +29,8 @@ TEST_CASE("the base image is the volume in a border of the pad value", "[pyramid
       const int64_t rows = n + 2 * pad, columns = m + 2 * pad, planes = p + 2 * pad;
       std::vector<float> got(static_cast<size_t>(rows * columns * planes), kUntouched);
       std::vector<float> threaded = got;
-      plc::make_base_image(volume, {100.0, 1.0 / 400.0}, pad, 200.0, serial, simd, got.data());
-      plc::make_base_image(volume, {100.0, 1.0 / 400.0}, pad, 200.0, threads, simd,
-                           threaded.data());
+      plc::make_base_image(volume, {100.0, 500.0}, pad, 200.0, serial, simd, got.data());
+      plc::make_base_image(volume, {100.0, 500.0}, pad, 200.0, threads, simd, threaded.data());
       REQUIRE(first_difference(got, threaded) == -1);
       for (int64_t z = 0; z < planes; ++z) {
         for (int64_t y = 0; y < rows; ++y) {
@@ -56,7 +55,7 @@ TEST_CASE("a voxel's value is itself on I_0, copied or borrowed, in every type",
   const std::vector<int32_t> integers(voxels.begin(), voxels.end());
   const VolumeView volume{VoxelType::kI16, voxels.data(), {16, 16, 256}, {1, 1, 1}};
   const VolumeView wide{VoxelType::kI32, integers.data(), {16, 16, 256}, {1, 1, 1}};
-  const plc::Window window{-105.506348, 1 / (1418.877197 + 105.506348)};
+  const plc::Window window{-105.506348, 1418.877197};
   const plc::VoxelForm form = plc::borrowed_form(volume, window, 0, 0);
   REQUIRE(form.type == plc::ImageType::kI16);
   REQUIRE(plc::borrowed_form(wide, window, 0, 0).type == plc::ImageType::kUnit);

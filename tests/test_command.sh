@@ -130,6 +130,18 @@ for output in out/mesh.xyz out/mesh missing/mesh.ply out; do
   refused "output $output" "$output" "$pellicle" extract ball.nrrd --iso 0.5 -o $output
 done
 mkdir folder.ply
+# In millimetres of voxels that are eight times as long as wide a surface has more vertices than the
+# image has voxels.
+{
+  printf 'NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: 12 12 12\n'
+  printf 'space directions: (1,0,0) (0,1,0) (0,0,8)\nspace origin: (0,0,0)\nencoding: raw\n\n'
+  yes | head -c 1728 | tr 'y\n' '\0\310'
+} >long.nrrd
+works "a surface out of proportion" 0 "$pellicle" extract long.nrrd -o out/long.ply --iso 100 \
+  --anisotropy physical --levels 0 --max-iterations 1
+grep -q '^pellicle: expected: about .*, more than the image has voxels$' stderr ||
+  fails "a surface out of proportion: is not told before it is made"
+left_over >/dev/null
 refused "a folder as output" "folder.ply" "$pellicle" extract ball.nrrd --iso 0.5 -o folder.ply
 # A file may have 4 KiB: what is written meets the end of the room. So would the counts that a coverage
 # build writes when it ends, which go elsewhere.
@@ -226,6 +238,9 @@ for key in pellicle input dims spacing range parameters levels level unit delta 
   says "report" "\"$key\":" out/r.json
 done
 says "report" '"hash": "[0-9a-f]{16}"' out/r.json
+works "--level-iso" 0 "$pellicle" extract ball.nrrd --iso 0.5 --window 0,1 --levels 1 --level-iso 0.45,0.5 \
+  -o out/r.ply --report out/r.json
+tr -d ' \n' <out/r.json | grep -q '"level_iso":\[0.45,0.5\]' || fails "--level-iso: the report has another order"
 works "--each-level" 0 "$pellicle" extract ball.nrrd --iso 0.5 --levels 1 --each-level --quiet -o out/l.ply
 for file in out/l-level1.ply out/l-level0.ply; do works "check of $file" 0 "$pellicle" check $file; done
 cmp -s out/l.ply out/l-level0.ply || fails "--each-level: the last level's surface is not the result"
@@ -256,6 +271,43 @@ printf 'OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n' >op
 works "an open mesh" 1 "$pellicle" check open.off
 left_over >/dev/null
 
+# ---- coordinates that floats do not hold, and that doubles do not
+moved() {  # ORIGIN SPACING
+  LC_ALL=C sed "s/^space origin.*/space origin: ($1,$1,$1)/
+    s/^space directions.*/space directions: ($2,0,0) (0,$2,0) (0,0,$2)/" <ball.nrrd >moved.nrrd
+}
+works "near" 0 "$pellicle" extract ball.nrrd --iso 0.5 --quiet -o near.ply --report near.json
+says "report of near" '"coordinates": "float"' near.json
+for place in "1e7 1" "1e5 1e-6" "0 1e-25"; do
+  read -r origin spacing <<<"$place"
+  moved "$origin" "$spacing"
+  for suffix in stl ply obj off vtp; do
+    works "$place .$suffix" 0 "$pellicle" extract moved.nrrd --iso 0.5 --quiet -o "out/m.$suffix" \
+      --report out/m.json
+    [ "$spacing" = 1e-25 ] ||
+      says "$place .$suffix" "^pellicle: out/m.$suffix: written in double precision" stderr
+    [ "$spacing" = 1e-25 ] || says "report of $place" '"coordinates": "double"' out/m.json
+    works "check of $place .$suffix" 0 "$pellicle" check "out/m.$suffix"
+    works "measure of $place .$suffix" 0 "$pellicle" measure "out/m.$suffix"
+    [ "$suffix" = ply ] || works "$place .$suffix" 0 "$pellicle" measure "out/m.$suffix" --curvature \
+      -o out/again.ply
+    [ "$suffix" = ply ] || works "check again of $place .$suffix" 0 "$pellicle" check out/again.ply
+  done
+done
+moved 1e7 1
+works "levels far away" 0 "$pellicle" extract moved.nrrd --iso 0.5 --levels 1 --each-level --quiet \
+  -o out/l.ply
+for file in out/l-level1.ply out/l-level0.ply; do works "check of $file" 0 "$pellicle" check $file; done
+left_over >/dev/null
+moved 1e6 1e-12
+extract "beyond doubles" "out/mesh.ply: not written: .*--space voxel" moved.nrrd --iso 0.5 --quiet
+extract "levels beyond doubles" "out/mesh-level1.ply: not written" moved.nrrd --iso 0.5 --levels 1 \
+  --each-level --quiet
+works "beyond doubles in voxels" 0 "$pellicle" extract moved.nrrd --iso 0.5 --quiet --space voxel \
+  -o out/m.stl
+works "check in voxels" 0 "$pellicle" check out/m.stl
+left_over >/dev/null
+
 # ---- stdout on a full disk
 full_stdout() {  # COMMAND...
   local code=0
@@ -272,10 +324,69 @@ left_over >/dev/null
 
 # ---- Ctrl-C
 works "phantom" 0 "$pellicle" phantom sierpinski -o sponge.nrrd
-works "interrupted" 130 timeout --preserve-status -s INT 3 \
-  "$pellicle" extract sponge.nrrd --iso 100 --levels 0 -o out/sponge.ply --report out/sponge.json
-left=$(left_over)
-if [ -n "$left" ]; then fails "interrupted: leaves $left"; fi
+for signal in INT HUP; do
+  works "interrupted by SIG$signal" 130 timeout --preserve-status -s $signal 2 \
+    "$pellicle" extract sponge.nrrd --iso 100 --levels 0 -o out/sponge.ply --report out/sponge.json
+  says "interrupted by SIG$signal" "^pellicle: interrupted$" stderr
+  left=$(left_over)
+  if [ -n "$left" ]; then fails "interrupted by SIG$signal: leaves $left"; fi
+done
+
+# ---- a signal while a file is being written: of two files, the second one is a pipe that nobody reads
+being_written() {  # N: ends once this one's temporary file of that number is there.
+  mkfifo -m 600 out/a.mhd 2>/dev/null
+  "$pellicle" phantom chain --size 24 -o out/a.mhd >stdout 2>stderr &
+  writer=$!
+  until [ -e "out/.a.raw.pellicle-$1" ] || ! kill -0 $writer 2>/dev/null; do sleep 0.01; done
+}
+for signal in INT TERM HUP PIPE; do
+  being_written 0
+  kill -s $signal $writer
+  code=0
+  wait $writer || code=$?
+  if [ $code -ne 130 ]; then fails "SIG$signal while writing: exit code $code"; fi
+  [ $signal = PIPE ] && expected="" || expected="pellicle: interrupted"
+  if [ "$(cat stderr)" != "$expected" ]; then fails "SIG$signal while writing: not the line"; fi
+  left=$(left_over)
+  if [ "$left" != out/a.mhd ]; then fails "SIG$signal while writing: leaves $left"; fi
+done
+being_written 0
+kill -s KILL $writer
+wait $writer 2>/dev/null
+rm out/a.mhd
+if [ ! -e out/.a.raw.pellicle-0 ]; then fails "SIGKILL while writing: no leftover to take away"; fi
+works "after SIGKILL" 0 "$pellicle" phantom chain --size 24 -o out/a.mhd
+if [ "$(ls -A out | xargs)" != "a.mhd a.raw" ]; then fails "after SIGKILL: a leftover stays"; fi
+left_over >/dev/null
+being_written 0
+first=$writer
+being_written 1
+if [ ! -e out/.a.raw.pellicle-0 ]; then fails "a file that another process writes is taken away"; fi
+kill $first $writer
+wait $first $writer 2>/dev/null
+left_over >/dev/null
+trap '' HUP  # as nohup does
+being_written 0
+kill -s HUP $writer
+cat out/a.mhd >/dev/null
+code=0
+wait $writer || code=$?
+trap - HUP
+if [ $code -ne 0 ]; then fails "ignored SIGHUP: exit code $code"; fi
+left_over >/dev/null
+
+# ---- a reader of stdout that has gone
+mkfifo pipe
+exec 8<>pipe 9>pipe 8<&-
+for arguments in --help "check open.off" "measure tetra.off --curvature -o out/m.ply"   "extract ball.nrrd --iso 0.5 --levels 0 -o out/m.ply"; do
+  read -ra words <<<"$arguments"
+  code=0
+  "$pellicle" "${words[@]}" >&9 2>stderr || code=$?
+  if [ $code -ne 130 ] || grep -v "^level" stderr; then fails "$arguments, nobody reads: exit code $code"; fi
+  if [[ $arguments == *-o* ]]; then works "$arguments, nobody reads" 0 "$pellicle" check out/m.ply; fi
+  left_over >/dev/null
+done
+exec 9>&-
 
 if [ $failures -gt 0 ]; then echo "$failures failures"; exit 1; fi
 echo "All as expected."

@@ -107,10 +107,38 @@ awk 'BEGIN { printf "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 12 12 12\nencod
   for (i = 0; i < 1728; ++i) { x = i % 12; y = int(i / 12) % 12; z = int(i / 144)
     print (x > 1 && x < 10 && y > 1 && y < 10 && z > 1 && z < 10 ? 3 : i == 0 ? 8 : 0) } }' >speck.nrrd
 works "a speck" 0 "$pellicle" extract --labels speck.nrrd -o out/s.ply --quiet
-grep -q "label 8: 1 voxel, .*left out" stderr || fails "a speck: not told"
+grep -q "label 8: too small .*left out" stderr || fails "a speck: not told"
 if [ "$(wc -l <stderr)" -ne 1 ]; then fails "a speck: not one line"; fi
 if [ "$(ls out)" != s-3.ply ]; then fails "a speck: wrote $(ls out)"; fi
 find out -mindepth 1 -delete
+# Fifteen specks beside a label that holds a surface: one line.
+awk 'BEGIN { printf "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 12 12 12\nencoding: ascii\n\n"
+  for (i = 0; i < 1728; ++i) { x = i % 12; y = int(i / 12) % 12; z = int(i / 144)
+    print (x > 3 && y > 3 && z > 3 ? 3 : x % 2 + y % 2 + z == 0 && y < 6 && x < 10 ? 10 + x / 2 + 5 * y / 2 : 0) } }' \
+  >specks.nrrd
+works "specks" 0 "$pellicle" extract --labels specks.nrrd -o out/s.ply --quiet
+says "specks" "^pellicle: 15 labels \(10, 11, .*, 19 \.\.\.\): too small .*: left out$" stderr
+if [ "$(wc -l <stderr)" -ne 1 ]; then fails "specks: not one line"; fi
+find out -mindepth 1 -delete
+
+# ---- where floats would make the surfaces meet, all are written in doubles; where doubles do, none is
+LC_ALL=C sed 's/^space origin.*/space origin: (1e7,0,0)/' <cells.nrrd >far.nrrd
+works "far labels" 0 "$pellicle" extract --labels far.nrrd -o out/cell.off --report out/cell.json --quiet
+says "far labels" "^pellicle: out/cell.off: written in double precision" stderr
+if [ "$(wc -l <stderr)" -ne 1 ]; then fails "far labels: not one line"; fi
+union out/cell-*.off >all.off
+components all.off >/dev/null
+says "far labels" '"coordinates": "double"' out/cell-2.json
+find out -mindepth 1 -delete
+LC_ALL=C sed 's/^space origin.*/space origin: (1e18,0,0)/' <cells.nrrd >farther.nrrd
+refused "labels too far away" "out/cell.off: not written: .*--space voxel" \
+  "$pellicle" extract --labels farther.nrrd -o out/cell.off --quiet
+works "labels far away in voxels" 0 "$pellicle" extract --labels farther.nrrd --space voxel \
+  -o out/cell.off --quiet
+union out/cell-*.off >all.off
+components all.off >/dev/null
+find out -mindepth 1 -delete
+
 labels() { refused "$1" "$2" "$pellicle" extract --labels "${@:3}" -o out/mesh.ply --quiet; }
 labels "no labels" "no label" zeros.nrrd
 labels "label of one half" "half.nrrd.*integer" half.nrrd

@@ -83,8 +83,8 @@ plc_parameters chain_parameters() {
   p.window_high = 1;
   p.levels = 1;
   p.level_iso_count = 2;
-  p.level_iso[0] = 0.5;
-  p.level_iso[1] = 0.4;
+  p.level_iso[0] = 0.4;
+  p.level_iso[1] = 0.5;
   p.curvature = 0.1;
   p.spring = 0.01;
   return p;

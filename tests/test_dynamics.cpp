@@ -383,6 +383,16 @@ TEST_CASE("the time step is lowered to what the stiffest mode takes", "[dynamics
   CHECK(plc::stable_time_step(model) == Approx(2.2 * std::sqrt(3 / (2.6 * 0.4 + 24 + 7 + 10))));
 }
 
+TEST_CASE("the time step is lowered to what the damping takes", "[dynamics]") {
+  plc::Model model;
+  model.time_step = 1.5F;
+  model.damping = 10;
+  model.mass = 2;
+  CHECK(plc::stable_time_step(model) == Approx(0.5));
+  model.damping = 0;
+  CHECK(plc::stable_time_step(model) > 0.5F);
+}
+
 TEST_CASE("stiff models stay bounded for hundreds of steps", "[dynamics]") {
   const Image image = ball();
   for (const auto& [curvature, spring, attraction] :

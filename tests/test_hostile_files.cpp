@@ -1,14 +1,18 @@
 // Files made to do harm are refused in one line, before memory is taken: headers that lie, small
 // files that stand for large ones, sizes about 2^31, 2^32 and 2^63.
+#include <sys/mman.h>
+
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 
 #include "tests/limited_memory.h"
 #include "tests/sample_files.h"
 #include "tests/tool_fixtures.h"
 #include "tools/attach_file.h"
 #include "tools/mesh_io.h"
+#include "tools/mesh_io_formats.h"
 #include "tools/volume_io.h"
 #include "tools/volume_io_formats.h"
 #include "tools/volume_io_memory.h"
@@ -266,6 +270,25 @@ TEST_CASE("An NRRD of slices in files is read, and refused where they are not th
   CHECK_THAT(files.volume("a.nhdr", header("bzip2", "s1.raw")), Catch::Contains("bzip2"));
 }
 
+TEST_CASE("TIFF directories of no entries are refused before a library walks them", "[hostile]") {
+  const Files files;
+  std::string tiff = samples::tiff(4, 3, 8, 1, {std::string(12, 'a'), std::string(12, 'b')});
+  const auto empty = static_cast<uint32_t>(tiff.size());
+  samples::put_at(tiff, tiff.size() - 4, empty);
+  samples::put<uint16_t>(tiff, 0);
+  samples::put<uint32_t>(tiff, empty);
+  CHECK_THAT(files.volume("a.tif", tiff), Catch::Contains("empty"));
+}
+
+TEST_CASE("A MetaImage of many axes is refused before they are read", "[hostile]") {
+  const Files files;
+  for (const char* const axes : {"11", "100000", "1e5", "4294967296"}) {
+    std::string file = meta("2 2 2", "", "LOCAL", std::string(16, 'a'));
+    file.replace(file.find("NDims = 3"), 9, std::string("NDims = ") + axes);
+    CHECK_THAT(files.volume("a.mha", file), Catch::Contains(std::string(axes) + "-D"));
+  }
+}
+
 TEST_CASE("TIFF directories that lead in circles end soon", "[hostile]") {
   const Files files;
   // 5,000 entries, the next directory is the same.
@@ -276,7 +299,7 @@ TEST_CASE("TIFF directories that lead in circles end soon", "[hostile]") {
   const ItkHeader header{plc::tools::ItkComponent::kU8, {2, 2, 2}};
   const std::string path = files.folder().put("a.tif", tiff);
   CHECK_THAT(failure_of([&] { plc::tools::check_file_size(path, ItkFormat::kTiff, header); }),
-             Catch::Contains("overlap"));
+             Catch::Contains("in a circle"));
 }
 
 TEST_CASE("InVesalius projects are refused before memory is taken", "[hostile]") {
@@ -344,6 +367,32 @@ TEST_CASE("VTP files that stand for more than they are take no memory", "[hostil
                                                     samples::raw<uint32_t>({240000}) + data +
                                                     "</AppendedData>")),
              Catch::Contains("bytes of other arrays"));
+}
+
+TEST_CASE("Blocks of a VTP file are counted without wrapping", "[hostile]") {
+  // 2^26 blocks of 2^38 bytes are 0 in 64 bits. The file is as long as it must be for that; what of
+  // it is not written takes no memory.
+  constexpr uint64_t kBlocks = uint64_t{1} << 26;
+  constexpr uint64_t kBlockSize = uint64_t{1} << 38;
+  constexpr uint64_t kPacked = kBlockSize / 1100 + (uint64_t{1} << 16);
+  const std::string array = "<DataArray type=\"Float32\" format=\"appended\" offset=\"0\"/>";
+  const std::string head =
+      "<VTKFile type=\"PolyData\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">"
+      "<PolyData>" +
+      piece(array) + "</PolyData><AppendedData encoding=\"raw\">_" +
+      samples::raw<uint64_t>({kBlocks, kBlockSize, 0, kPacked});
+  const size_t size = head.size() + 8 * kBlocks + kPacked;
+  void* const at = mmap(nullptr, size, PROT_READ | PROT_WRITE,
+                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  REQUIRE(at != MAP_FAILED);
+  std::memcpy(at, head.data(), head.size());
+  const std::string_view file(static_cast<const char*>(at), size);
+  CHECK_THAT(failure_of([&] {
+               const Tight tight;
+               plc::tools::read_vtp("a.vtp", file);
+             }),
+             Catch::Contains("contradict each other"));
+  munmap(at, size);
 }
 
 TEST_CASE("What a message repeats of a file is short and one line", "[hostile]") {

@@ -51,7 +51,7 @@ grep -q mimalloc <<<"$needed" && fails "the library links mimalloc, which replac
 number() { sed -nE "s/^#define PLC_VERSION_$1 ([0-9]+)$/\1/p" "$header"; }
 version=$(number MAJOR).$(number MINOR).$(number PATCH)
 soname=$(readelf -d "$library" | sed -nE 's/.*SONAME.*\[(.*)\]/\1/p')
-[ "$soname" = "libpellicle.so.$(number MAJOR)" ] || fails "the SONAME is $soname"
+[ "$soname" = "libpellicle.so.$(number MAJOR).$(number MINOR)" ] || fails "the SONAME is $soname"
 [ -f "$library.$version" ] || fails "no libpellicle.so.$version"
 [ "$("$prefix/bin/pellicle" --version)" = "$version" ] || fails "pellicle --version is not $version"
 export PKG_CONFIG_PATH=$libdir/pkgconfig
@@ -111,10 +111,10 @@ done
 runs shared "$here/host_c-shared/host_c" "$here/torus.obj"
 quietly "check of what host_c writes" "$prefix/bin/pellicle" check "$here/torus.obj"
 
-# A later version than there is, and a component that there is not, are refused.
+# Another minor version than there is, and a component that there is not, are refused.
 printf 'cmake_minimum_required(VERSION 3.18)\nproject(p LANGUAGES C)\nfind_package(Pellicle ${ASK} REQUIRED)\n' \
   >"$here/CMakeLists.txt"
-for ask in "99.0" "COMPONENTS;nonsense"; do
+for ask in "99.0" "0.2" "COMPONENTS;nonsense"; do
   if cmake -S "$here" -B "$here/ask" -DCMAKE_PREFIX_PATH="$prefix" "-DASK=$ask" >"$here/log" 2>&1
   then fails "find_package(Pellicle $ask) finds $version"; fi
   grep -qi pellicle "$here/log" || fails "find_package(Pellicle $ask) does not say what is wrong"

@@ -55,7 +55,7 @@ struct Case {
   std::vector<Overlap> overlaps(const std::vector<char>& changed) const {
     return find_overlaps(context.get(), meshes, changed);
   }
-  bool apart() const { return disjoint(context.get(), meshes); }
+  bool apart() const { return disjoint(context.get(), meshes, false); }
 
   std::vector<TriangleMesh> owned;
   std::vector<const TriangleMesh*> meshes;
@@ -117,4 +117,54 @@ TEST_CASE("Pairs of which nothing has changed are not looked at again", "[label_
   REQUIRE(overlaps.size() == 1);
   CHECK(overlaps[0].first == 2);
   CHECK(c.overlaps({0, 0, 0, 0}).empty());
+}
+
+TEST_CASE("Of surfaces of several parts, one part inside another's overlaps it",
+          "[label_overlaps]") {
+  TriangleMesh parts = octahedron(0, 1);
+  add_octahedron(parts, 20, 1);
+  const Case c({parts, octahedron(0, 3)});  // neither box lies within the other
+  CHECK_FALSE(c.apart());
+  const auto overlaps = c.overlaps();
+  REQUIRE(overlaps.size() == 1);
+  CHECK(overlaps[0].nested);
+}
+
+TEST_CASE("Of many surfaces those that meet are found, in ascending order", "[label_overlaps]") {
+  // A grid in which the neighbours on the first axis meet in every third row only.
+  std::vector<TriangleMesh> grid;
+  std::vector<std::pair<size_t, size_t>> expected;
+  for (size_t row = 0; row < 6; ++row) {
+    for (size_t column = 0; column < 5; ++column) {
+      TriangleMesh mesh =
+          octahedron((row % 3 == 0 ? 1.9 : 2.1) * static_cast<double>(4 - column), 1);
+      for (size_t i = 1; i < mesh.xyz.size(); i += 3) mesh.xyz[i] += 1.5 * static_cast<double>(row);
+      if (row % 3 == 0 && column > 0) expected.emplace_back(grid.size() - 1, grid.size());
+      grid.push_back(std::move(mesh));
+    }
+  }
+  // Rows whose boxes overlap, but not what is in them.
+  for (size_t i = 0; i < grid.size(); ++i) {
+    for (size_t k = 2; k < grid[i].xyz.size(); k += 3) {
+      grid[i].xyz[k] += 1.2 * static_cast<double>(i / 5 % 2);
+    }
+  }
+  const auto overlaps = Case(grid).overlaps();
+  REQUIRE(overlaps.size() == expected.size());
+  for (size_t i = 0; i < expected.size(); ++i) {
+    CHECK(std::pair(overlaps[i].first, overlaps[i].second) == expected[i]);
+    CHECK_FALSE(overlaps[i].nested);
+  }
+}
+
+TEST_CASE("Surfaces that meet only as floats are apart in doubles", "[label_overlaps]") {
+  TriangleMesh left = octahedron(0, 1);
+  TriangleMesh right = octahedron(2 + 1e-9, 1);
+  for (size_t i = 0; i < left.xyz.size(); ++i) {
+    left.xyz[i] += 1e4;
+    right.xyz[i] += 1e4;
+  }
+  const Case c({left, right});
+  CHECK(disjoint(c.context.get(), c.meshes, false));
+  CHECK_FALSE(disjoint(c.context.get(), c.meshes, true));
 }

@@ -17,7 +17,7 @@ using plc::Mesh;
 using plc::Vec3;
 using plc::VoxelSet;
 using samples::Ball;
-using samples::Scene;
+using samples::BallScene;
 
 constexpr float kIso = 0.5F;
 constexpr double kDelta = 1 / plc::kUnitPerDelta;
@@ -32,7 +32,7 @@ void surface_around(Mesh& mesh, const Ball& b) {
 }
 
 // Starts what is missed, and checks what is always so.
-LateBubbles start(Mesh& mesh, const Scene& scene, VoxelSet& tried, int threads = 1,
+LateBubbles start(Mesh& mesh, const BallScene& scene, VoxelSet& tried, int threads = 1,
                   bool above = true) {
   const plc::Schedule schedule(threads);
   LateBubbles started;
@@ -46,13 +46,13 @@ LateBubbles start(Mesh& mesh, const Scene& scene, VoxelSet& tried, int threads =
   return started;
 }
 
-LateBubbles start(Mesh& mesh, const Scene& scene) {
+LateBubbles start(Mesh& mesh, const BallScene& scene) {
   VoxelSet tried;
   return start(mesh, scene, tried);
 }
 
 // Voxels on the wrong side, of those where the image is not nearly iso.
-size_t wrong_voxels(const Mesh& mesh, const Scene& scene) {
+size_t wrong_voxels(const Mesh& mesh, const BallScene& scene) {
   const plc::Vector<uint8_t> inside = samples::sides_of(mesh, scene.view());
   size_t wrong = 0;
   for (size_t i = 0; i < inside.size(); ++i) {
@@ -73,7 +73,8 @@ float nearest_to_old(const Mesh& mesh, uint32_t old) {
   return nearest;
 }
 
-void fill_box(Scene& scene, std::array<int32_t, 3> low, std::array<int32_t, 3> high, float value) {
+void fill_box(BallScene& scene, std::array<int32_t, 3> low, std::array<int32_t, 3> high,
+              float value) {
   for (int32_t z = low[2]; z <= high[2]; ++z) {
     for (int32_t y = low[1]; y <= high[1]; ++y) {
       for (int32_t x = low[0]; x <= high[0]; ++x) scene.at(x, y, z) = value;
@@ -84,7 +85,7 @@ void fill_box(Scene& scene, std::array<int32_t, 3> low, std::array<int32_t, 3> h
 }  // namespace
 
 TEST_CASE("where nothing is missed the mesh stays as it is", "[late_bubbles]") {
-  const Scene scene({kMain});
+  const BallScene scene({kMain});
   Mesh mesh;
   surface_around(mesh, kMain);
   const uint64_t before = plc::state_hash(mesh);
@@ -97,7 +98,7 @@ TEST_CASE("where nothing is missed the mesh stays as it is", "[late_bubbles]") {
 
 TEST_CASE("a missed part gets a surface of its own shape, faces outward, apart from the rest",
           "[late_bubbles]") {
-  const Scene scene({kMain, {28, 12, 12, 4}});
+  const BallScene scene({kMain, {28, 12, 12, 4}});
   Mesh mesh;
   surface_around(mesh, kMain);
   const uint32_t old = mesh.slots();
@@ -120,7 +121,7 @@ TEST_CASE("a missed part gets a surface of its own shape, faces outward, apart f
 }
 
 TEST_CASE("a missed cavity gets a wall that faces inward", "[late_bubbles]") {
-  const Scene scene({{12, 12, 12, 10}, {12, 12, 12, -4}});
+  const BallScene scene({{12, 12, 12, 10}, {12, 12, 12, -4}});
   Mesh mesh;
   surface_around(mesh, {12, 12, 12, 10});
   const double before = samples::volume(mesh);
@@ -134,7 +135,7 @@ TEST_CASE("a missed cavity gets a wall that faces inward", "[late_bubbles]") {
 }
 
 TEST_CASE("parts and cavities are started together and counted each", "[late_bubbles]") {
-  const Scene scene({{12, 12, 12, 10}, {12, 12, 12, -4}, {31, 7, 12, 4}, {31, 18, 12, 3.5}});
+  const BallScene scene({{12, 12, 12, 10}, {12, 12, 12, -4}, {31, 7, 12, 4}, {31, 18, 12, 3.5}});
   Mesh mesh;
   surface_around(mesh, {12, 12, 12, 10});
   const LateBubbles started = start(mesh, scene);
@@ -146,7 +147,7 @@ TEST_CASE("parts and cavities are started together and counted each", "[late_bub
 }
 
 TEST_CASE("dark objects get bubbles where the image is below iso", "[late_bubbles]") {
-  Scene scene({{12, 12, 12, 10}, {12, 12, 12, -4}, {31, 7, 12, 4}});
+  BallScene scene({{12, 12, 12, 10}, {12, 12, 12, -4}, {31, 7, 12, 4}});
   for (float& v : scene.values) v = 1 - v;
   Mesh mesh;
   surface_around(mesh, {12, 12, 12, 10});
@@ -159,7 +160,7 @@ TEST_CASE("dark objects get bubbles where the image is below iso", "[late_bubble
 
 TEST_CASE("a plate of two or three voxels gets a plate, not a ball", "[late_bubbles]") {
   for (const int32_t thick : {2, 3}) {
-    Scene scene({kMain});
+    BallScene scene({kMain});
     fill_box(scene, {28, 3, 3}, {27 + thick, 20, 20}, 1);
     Mesh mesh;
     surface_around(mesh, kMain);
@@ -183,7 +184,7 @@ TEST_CASE("a plate of two or three voxels gets a plate, not a ball", "[late_bubb
 }
 
 TEST_CASE("what the mesh cannot resolve gets nothing", "[late_bubbles]") {
-  Scene scene({kMain});
+  BallScene scene({kMain});
   fill_box(scene, {30, 3, 3}, {30, 20, 20}, 1);  // a sheet of one voxel
   fill_box(scene, {25, 12, 12}, {26, 12, 12}, 1);
   Mesh mesh;
@@ -194,7 +195,7 @@ TEST_CASE("what the mesh cannot resolve gets nothing", "[late_bubbles]") {
 }
 
 TEST_CASE("what was tried once is not started again, though it is missed still", "[late_bubbles]") {
-  const Scene scene({kMain, {28, 12, 12, 4}});
+  const BallScene scene({kMain, {28, 12, 12, 4}});
   Mesh mesh;
   surface_around(mesh, kMain);
   VoxelSet tried;
@@ -209,7 +210,7 @@ TEST_CASE("what was tried once is not started again, though it is missed still",
 
 TEST_CASE("a part next to the surface starts apart from it", "[late_bubbles]") {
   // The surface lies 2.2 within the object's: too near for a place; the second ball overlaps that.
-  const Scene scene({kMain, {21.5, 12, 12, 5}});
+  const BallScene scene({kMain, {21.5, 12, 12, 5}});
   Mesh mesh;
   surface_around(mesh, kMain);
   const uint32_t old = mesh.slots();
@@ -218,7 +219,7 @@ TEST_CASE("a part next to the surface starts apart from it", "[late_bubbles]") {
 }
 
 TEST_CASE("a part that the border cuts is closed there", "[late_bubbles]") {
-  const Scene scene({kMain, {39, 12, 12, 5}});
+  const BallScene scene({kMain, {39, 12, 12, 5}});
   Mesh mesh;
   surface_around(mesh, kMain);
   const LateBubbles started = start(mesh, scene);
@@ -230,7 +231,7 @@ TEST_CASE("a part that the border cuts is closed there", "[late_bubbles]") {
 TEST_CASE("bubbles have the image's shape where voxels are not cubes", "[late_bubbles]") {
   for (const std::array<float, 3>& scale :
        {std::array{1.0F, 1.0F, 0.5F}, std::array{1.0F, 2.0F, 1.0F}}) {
-    const Scene scene({kMain, {28, 12, 12, 5}}, scale);
+    const BallScene scene({kMain, {28, 12, 12, 5}}, scale);
     Mesh mesh;
     surface_around(mesh, kMain);
     const LateBubbles started = start(mesh, scene);
@@ -240,7 +241,7 @@ TEST_CASE("bubbles have the image's shape where voxels are not cubes", "[late_bu
 }
 
 TEST_CASE("late bubbles have the same bits for any number of threads", "[late_bubbles]") {
-  const Scene scene({{12, 12, 12, 10}, {12, 12, 12, -4}, {31, 7, 12, 4}, {31, 18, 12, 3.5}});
+  const BallScene scene({{12, 12, 12, 10}, {12, 12, 12, -4}, {31, 7, 12, 4}, {31, 18, 12, 3.5}});
   std::vector<uint64_t> hashes;
   std::vector<double> volumes;
   for (const int threads : {1, 2, 3}) {

@@ -179,7 +179,7 @@ TEST_CASE("seeds are balls of millimetres in every space", "[level_start]") {
   }
 }
 
-TEST_CASE("a seed too small for the level is refused with its place, the level and the least",
+TEST_CASE("a seed too small for the level is refused with its number, the level and the least",
           "[level_start]") {
   StartSpec spec = of(Init::kSeeds);
   spec.seeds = {seed(7, 13, 6, 7), seed(23, 13.5, 6, 3)};
@@ -187,8 +187,8 @@ TEST_CASE("a seed too small for the level is refused with its place, the level a
   const Started s(spec, 2);  // the least radius is 1.15 delta = 2.875 voxels; 1.5 along z
   CHECK(s.status.code() == ErrorCode::kInvalidArgument);
   CHECK(s.status.message() ==
-        "seed at voxel (23, 13.5, 6): too small for level 2, where the smallest radius is 2.88 "
-        "mesh units; use fewer levels or larger seeds");
+        "seed 1: too small for level 2, where the smallest radius is 5.75 mm; "
+        "use fewer levels or larger seeds");
   // In millimetres the same seed is large enough.
   CHECK(Started(spec, 2, Anisotropy::kPhysical).status.ok());
 }
@@ -198,8 +198,7 @@ TEST_CASE("seeds that are nearer than (3) allows are refused, both named", "[lev
   spec.seeds = {seed(2, 13, 6, 4), seed(13, 13, 6, 4), seed(22, 13, 6, 4)};
   const Started s(spec, 0);  // the last two are 1 voxel apart: less than 1.25
   CHECK(s.status.code() == ErrorCode::kInvalidArgument);
-  CHECK(s.status.message() ==
-        "seed at voxel (22, 13, 6): touches the seed at voxel (13, 13, 6) on level 0");
+  CHECK(s.status.message() == "seed 2: touches seed 1 on level 0");
   spec.seeds[2].centre[0] = 22.5;
   check_sound(Started(spec, 0), false);
   // Coarser meshes need more room.
@@ -271,6 +270,16 @@ TEST_CASE("a mesh that is no closed embedded surface is refused, and says why", 
   const Started inverted(of(samples::flipped(ball_in_voxels(9))), 0);
   CHECK(inverted.status.code() == ErrorCode::kInvalidData);
   CHECK_THAT(inverted.status.message(), Contains("turned outward"));
+}
+
+TEST_CASE("a mesh that reaches far beyond the image is refused, and says where", "[level_start]") {
+  for (const double far : {1e5, -1e5}) {
+    Soup ball = ball_in_voxels(9);
+    ball.xyz[3 * 7 + 1] = static_cast<float>(far);
+    const Started s(of(ball), 0);
+    CHECK(s.status.code() == ErrorCode::kInvalidArgument);
+    CHECK(s.status.message() == "vertex 7 of the mesh lies too far beyond the image");
+  }
 }
 
 TEST_CASE("a given mesh of which nothing is left on the level is an error", "[level_start]") {

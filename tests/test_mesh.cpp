@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "engine/constants.h"
+#include "engine/refinement.h"
 #include "engine/state_io.h"
 #include "pyramid/memory.h"
 #include "tests/kernel_fixtures.h"
@@ -62,9 +63,13 @@ bool restored(const Alter& alter) {
   Mesh mesh;
   samples::fill_mesh(mesh, samples::sphere(2), 0.5);
   alter(mesh);
-  plc::StateWriter writer;
+  plc::StateWriter count;
+  mesh.save(count);
+  std::vector<uint8_t> bytes(count.size());
+  plc::StateWriter writer(bytes.data());
   mesh.save(writer);
-  plc::StateReader reader(writer.bytes().data(), writer.bytes().size());
+  REQUIRE(writer.size() == bytes.size());
+  plc::StateReader reader(bytes.data(), bytes.size());
   Mesh other;
   return other.restore(reader) && reader.left() == 0;
 }
@@ -358,6 +363,38 @@ TEST_CASE("reserving makes room without adding vertices", "[mesh]") {
   CHECK(mesh.slots() == 6);
   CHECK(mesh.create({}, {}) == 6);
   CHECK(mesh.packed.size() >= 1000);
+}
+
+TEST_CASE("no id is made beyond the limit, and nothing has changed then", "[mesh]") {
+  Mesh mesh;
+  samples::fill_mesh(mesh, samples::octahedron(), 1);
+  CHECK(mesh.most_vertices == plc::kMaxMeshVertices);
+  mesh.most_vertices = 6;
+  CHECK_THROWS_AS(mesh.create({}, {}), plc::TooManyVertices);
+  CHECK_THROWS_AS(mesh.create_many(1, 6, samples::kSerial), plc::TooManyVertices);
+  CHECK_THROWS_AS(mesh.create_many(~0U - 3, 6, samples::kSerial), plc::TooManyVertices);
+  CHECK_THROWS_AS(mesh.reserve(7), plc::TooManyVertices);
+  CHECK_THROWS_AS(mesh.reserve(uint64_t{3} << 31), plc::TooManyVertices);
+  CHECK(mesh.slots() == 6);
+  CHECK(plc::broken_invariant(mesh) == "");
+  Mesh copy = mesh.copy();
+  copy.renumber(plc::living_order(copy));
+  CHECK_THROWS_AS(copy.create({}, {}), plc::TooManyVertices);
+  copy.clear();
+  CHECK(copy.most_vertices == 6);
+}
+
+TEST_CASE("a ring that 16 bits do not count is told, not cut off", "[mesh]") {
+  Mesh mesh;
+  for (uint32_t v = 0; v < plc::kMaxValence + 2; ++v) mesh.create({}, {});
+  plc::Neighbors ring;
+  ring.resize(plc::kMaxValence);
+  for (uint32_t k = 0; k < ring.size(); ++k) ring[k] = k + 1;
+  mesh.set_ring(0, ring);
+  CHECK(mesh.valence(0) == plc::kMaxValence);
+  ring.push_back(plc::kMaxValence + 1);
+  CHECK_THROWS_WITH(mesh.set_ring(0, ring), Catch::Contains("65536 neighbours"));
+  CHECK(mesh.valence(0) == plc::kMaxValence);
 }
 
 TEST_CASE("each broken invariant is named", "[mesh]") {

@@ -437,6 +437,34 @@ TEST_CASE("Values that are no numbers are kept for the check to find", "[mesh_io
   CHECK(std::isinf(mesh.xyz[1]));
 }
 
+TEST_CASE("Coordinates in doubles are read back as they were from every format", "[mesh_io]") {
+  const fixtures::Folder folder;
+  TriangleMesh mesh = torus();
+  for (double& x : mesh.xyz) x = 1e7 / 3 + x * 1e-7;
+  mesh.doubles = true;
+  for (const std::string suffix : kSuffixes) {
+    CAPTURE(suffix);
+    const std::string path = folder / "mesh" + suffix;
+    write_mesh(path, mesh);
+    const TriangleMesh read = read_mesh(path);
+    REQUIRE(read.abc.size() == mesh.abc.size());
+    REQUIRE(read.xyz.size() == mesh.xyz.size());  // an .stl welds what is the same, and orders it
+    for (size_t i = 0; i < mesh.abc.size(); ++i) {
+      for (size_t k = 0; k < 3; ++k) {
+        REQUIRE(read.xyz[3 * read.abc[i] + k] == mesh.xyz[3 * mesh.abc[i] + k]);
+      }
+    }
+    if (suffix != ".stl" && suffix != ".off") CHECK(read.normals == mesh.normals);
+  }
+  CHECK_THAT(fixtures::contents(folder / "mesh.stl"), Catch::StartsWith("solid Pellicle\n"));
+  mesh.scalars.push_back({"Speed", std::vector<float>(mesh.xyz.size() / 3, 0.5F)});
+  for (const char* name : {"values.ply", "values.vtp"}) {
+    write_mesh(folder / name, mesh);
+    CHECK(read_mesh(folder / name).xyz == mesh.xyz);
+    CHECK(read_mesh(folder / name).abc == mesh.abc);
+  }
+}
+
 TEST_CASE("Paths that cannot be written are found before the run", "[mesh_io]") {
   const fixtures::Folder folder;
   using plc::tools::check_mesh_path;

@@ -15,7 +15,7 @@ using plc::MissedPlaces;
 using plc::Voxel;
 using plc::VoxelSet;
 using samples::Ball;
-using samples::Scene;
+using samples::BallScene;
 
 constexpr float kIso = 0.5F;
 constexpr float kClearance = 2;
@@ -25,13 +25,13 @@ void surface_around(Mesh& mesh, const Ball& b) {
   samples::fill_mesh(mesh, samples::moved(samples::sphere(3), b.x, b.y, b.z, b.radius), 1);
 }
 
-MissedPlaces find(const Mesh& mesh, const Scene& scene, VoxelSet& tried,
+MissedPlaces find(const Mesh& mesh, const BallScene& scene, VoxelSet& tried,
                   float clearance = kClearance, float radius = kRadius) {
   return plc::find_missed_places(mesh, scene.view(), kIso, true, clearance, radius,
                                  samples::kSerial, tried);
 }
 
-MissedPlaces find(const Mesh& mesh, const Scene& scene, float clearance = kClearance,
+MissedPlaces find(const Mesh& mesh, const BallScene& scene, float clearance = kClearance,
                   float radius = kRadius) {
   VoxelSet tried;
   return find(mesh, scene, tried, clearance, radius);
@@ -57,7 +57,7 @@ const Ball kMain{10, 12, 12, 7};
 }  // namespace
 
 TEST_CASE("a surface around all of the object misses nothing", "[missed_places]") {
-  const Scene scene({kMain});
+  const BallScene scene({kMain});
   Mesh mesh;
   surface_around(mesh, kMain);
   const MissedPlaces places = find(mesh, scene);
@@ -69,7 +69,7 @@ TEST_CASE("a surface around all of the object misses nothing", "[missed_places]"
 TEST_CASE("a ball beside the surface is one missed part, with all its voxels and their box",
           "[missed_places]") {
   const Ball second{28, 12, 11, 4};
-  const Scene scene({kMain, second});
+  const BallScene scene({kMain, second});
   Mesh mesh;
   surface_around(mesh, kMain);
   const MissedPlaces places = find(mesh, scene);
@@ -87,7 +87,7 @@ TEST_CASE("a ball beside the surface is one missed part, with all its voxels and
 }
 
 TEST_CASE("a hole that the surface encloses is a missed cavity, not a part", "[missed_places]") {
-  const Scene scene({{12, 12, 12, 10}, {12, 12, 12, -4}});
+  const BallScene scene({{12, 12, 12, 10}, {12, 12, 12, -4}});
   Mesh mesh;
   surface_around(mesh, {12, 12, 12, 10});
   const MissedPlaces places = find(mesh, scene);
@@ -101,7 +101,7 @@ TEST_CASE("a hole that the surface encloses is a missed cavity, not a part", "[m
 
 TEST_CASE("dark objects in bright images are told by the other side of iso", "[missed_places]") {
   const Ball second{28, 12, 12, 4};
-  Scene scene({kMain, second});
+  BallScene scene({kMain, second});
   Mesh mesh;
   surface_around(mesh, kMain);
   VoxelSet bright_tried;
@@ -117,7 +117,7 @@ TEST_CASE("dark objects in bright images are told by the other side of iso", "[m
 TEST_CASE("what is within the clearance of a vertex is the surface's own matter",
           "[missed_places]") {
   // 3 mesh units of object beyond the surface all around.
-  const Scene scene({{12, 12, 12, 9}});
+  const BallScene scene({{12, 12, 12, 9}});
   Mesh mesh;
   surface_around(mesh, {12, 12, 12, 6});
   CHECK(find(mesh, scene, 4).count[kPart] == 0);
@@ -129,13 +129,13 @@ TEST_CASE("what is within the clearance of a vertex is the surface's own matter"
 TEST_CASE("places that hold no ball of the radius are left out, whatever their extent",
           "[missed_places]") {
   const Ball second{28, 12, 12, 4};
-  const Scene scene({kMain, second});
+  const BallScene scene({kMain, second});
   Mesh mesh;
   surface_around(mesh, kMain);
   CHECK(find(mesh, scene, kClearance, 3).count[kPart] == 1);
   CHECK(find(mesh, scene, kClearance, 5).count[kPart] == 0);
   // A sheet of one voxel, larger than the ball: nothing for 0.6, enough for 0.4.
-  Scene sheet({kMain});
+  BallScene sheet({kMain});
   for (int32_t z = 2; z < 22; ++z) {
     for (int32_t y = 2; y < 22; ++y) sheet.at(30, y, z) = 1;
   }
@@ -146,7 +146,7 @@ TEST_CASE("places that hold no ball of the radius are left out, whatever their e
 TEST_CASE("a ball between the voxels' centres fits as well as one about a centre",
           "[missed_places]") {
   // 2 x 2 x 2 voxels hold a ball of just under 1 about their corner, none about a centre.
-  Scene scene({kMain});
+  BallScene scene({kMain});
   for (const int32_t z : {12, 13}) {
     for (const int32_t y : {12, 13}) {
       for (const int32_t x : {30, 31}) scene.at(x, y, z) = 1;
@@ -161,7 +161,7 @@ TEST_CASE("a ball between the voxels' centres fits as well as one about a centre
 TEST_CASE("parts that touch by a corner of a voxel are one, parts a voxel apart are two",
           "[missed_places]") {
   for (const int32_t gap : {0, 1}) {
-    Scene scene({kMain});
+    BallScene scene({kMain});
     const auto block = [&](int32_t from) {
       for (int32_t z = from; z < from + 4; ++z) {
         for (int32_t y = from; y < from + 4; ++y) {
@@ -186,21 +186,21 @@ TEST_CASE("a place that was tried is not found again, a new one is", "[missed_pl
   Mesh mesh;
   surface_around(mesh, kMain);
   VoxelSet tried;
-  const Scene scene({kMain, second});
+  const BallScene scene({kMain, second});
   CHECK(find(mesh, scene, tried).count[kPart] == 1);
   CHECK(all_of(tried).size() > 200);
   const MissedPlaces again = find(mesh, scene, tried);
   CHECK(again.count[kPart] == 0);
   CHECK(voxels_of(again, Missed::kPart) == 0);
   // One voxel in common is enough to know it by.
-  CHECK(find(mesh, Scene({kMain, {31, 12, 12, 4}}), tried).count[kPart] == 0);
-  const MissedPlaces other = find(mesh, Scene({kMain, second, {28, 4, 4, 3}}), tried);
+  CHECK(find(mesh, BallScene({kMain, {31, 12, 12, 4}}), tried).count[kPart] == 0);
+  const MissedPlaces other = find(mesh, BallScene({kMain, second, {28, 4, 4, 3}}), tried);
   CHECK(other.count[kPart] == 1);
   CHECK(other.high[kPart][1] < 8);
 }
 
 TEST_CASE("places left out for their size are not marked as tried", "[missed_places]") {
-  const Scene scene({kMain, {28, 12, 12, 4}});
+  const BallScene scene({kMain, {28, 12, 12, 4}});
   Mesh mesh;
   surface_around(mesh, kMain);
   VoxelSet tried;
@@ -211,30 +211,30 @@ TEST_CASE("places left out for their size are not marked as tried", "[missed_pla
 TEST_CASE("lengths are those of mesh space when voxels are not cubes", "[missed_places]") {
   // Three times as many voxels along z: the balls are the same in mesh units.
   const Ball second{28, 12, 12, 4};
-  const Scene fine({kMain, second}, {1, 1, 3});
+  const BallScene fine({kMain, second}, {1, 1, 3});
   Mesh mesh;
   surface_around(mesh, kMain);
   CHECK(find(mesh, fine).count == std::array<int64_t, 2>{1, 0});
   CHECK(find(mesh, fine, kClearance, 3).count[kPart] == 1);
   CHECK(find(mesh, fine, kClearance, 5).count[kPart] == 0);
   // Near in mesh units, though twelve voxels away.
-  const Scene grown({{10, 12, 12, 9}}, {1, 1, 3});
+  const BallScene grown({{10, 12, 12, 9}}, {1, 1, 3});
   CHECK(find(mesh, grown, 4).count[kPart] == 0);
 }
 
 TEST_CASE("an object at the border is found, its ball must lie within the image",
           "[missed_places]") {
-  const Scene scene({kMain, {39, 12, 12, 6}});
+  const BallScene scene({kMain, {39, 12, 12, 6}});
   Mesh mesh;
   surface_around(mesh, kMain);
   CHECK(find(mesh, scene).count[kPart] == 1);
   CHECK(find(mesh, scene).high[kPart][0] == 39);
-  const Scene sliver({kMain, {42, 12, 12, 4}});  // 2 voxels deep at most
+  const BallScene sliver({kMain, {42, 12, 12, 4}});  // 2 voxels deep at most
   CHECK(find(mesh, sliver, kClearance, 1.6F).count[kPart] == 0);
 }
 
 TEST_CASE("missed places are the same for any number of threads", "[missed_places]") {
-  const Scene scene({{12, 12, 12, 10}, {12, 12, 12, -5}, {30, 8, 8, 4}, {31, 18, 18, 3}});
+  const BallScene scene({{12, 12, 12, 10}, {12, 12, 12, -5}, {30, 8, 8, 4}, {31, 18, 18, 3}});
   Mesh mesh;
   surface_around(mesh, {12, 12, 12, 10});
   VoxelSet tried;

@@ -268,6 +268,38 @@ TEST_CASE("a window that does not hold the iso-values is refused", "[parameters]
         }) == "level iso-value 0.9: outside the window 0, 0.9");
 }
 
+TEST_CASE("surroundings on the object's side of an iso-value are refused: it would have no end",
+          "[parameters]") {
+  CHECK(not_derived([](plc_parameters& p) { p.pad_value = 0.5; }) ==
+        "pad value 0.5: on the object's side of iso 0.5");
+  CHECK(not_derived([](plc_parameters& p) {
+          p.pad_value = 0.4;
+          p.inside_below = 1;
+        }) == "pad value 0.4: on the object's side of iso 0.5");
+  CHECK(not_derived([](plc_parameters& p) {
+          p.window_low = 0;
+          p.window_high = 1;
+          p.pad_value = 0.3;
+          p.level_iso_count = 2;
+          p.level_iso[0] = 0.5;
+          p.level_iso[1] = 0.2;
+        }) == "pad value 0.3: on the object's side of level iso-value 0.2");
+  // The gradient's force knows no sides.
+  plc_parameters p = defaults();
+  p.pad_value = 0.9;
+  p.force = PLC_FORCE_GRADIENT;
+  CHECK(derive(p).ok());
+}
+
+TEST_CASE("no level's iso-value is derived beyond what surrounds the image", "[parameters]") {
+  plc_parameters p = defaults();
+  p.window_low = p.pad_value = 0;
+  REQUIRE(derive(p).ok());
+  CHECK(plc::level_iso_bound(p, 0.25) == Approx(plc::normalised(p, 0.3125)));
+  p.pad_value = 0.4;
+  CHECK(plc::level_iso_bound(p, 0.25) == Approx(plc::normalised(p, 0.425)));
+}
+
 TEST_CASE("the model is what was asked for, with the sign of the object's side", "[parameters]") {
   plc_parameters p = defaults();
   p.curvature = 0.25;

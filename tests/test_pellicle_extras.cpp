@@ -26,7 +26,7 @@ const samples::Volume& ball() {
       });
   return volume;
 }
-const double kMiddle[3] = {9.5, 7.5, 6.5};  // voxels
+constexpr std::array<double, 3> kMiddle = {9.5, 7.5, 6.5};  // voxels
 
 double ball_volume(double r) {
   return 4.0 / 3 * 3.14159265358979 * r * r * r;
@@ -46,18 +46,23 @@ plc_image framed(bool mirrored) {
   return image;
 }
 
-// Where the middle of the image lies, by the definition of the header.
-std::array<double, 3> middle(const plc_image& image, plc_space space) {
+// Where a voxel lies, by the definition of the header.
+std::array<double, 3> place_of(const plc_image& image, const std::array<double, 3>& voxel,
+                               plc_space space) {
   std::array<double, 3> p{};
   for (size_t i = 0; i < 3; ++i) {
     p[i] = image.origin[i];
     for (size_t j = 0; j < 3; ++j) {
-      p[i] += image.direction[3 * i + j] * image.spacing[j] * kMiddle[j];
+      p[i] += image.direction[3 * i + j] * image.spacing[j] * voxel[j];
     }
     if (space == PLC_SPACE_RAS && i < 2) p[i] *= -1;
-    if (space == PLC_SPACE_VOXEL) p[i] = kMiddle[i];
+    if (space == PLC_SPACE_VOXEL) p[i] = voxel[i];
   }
   return p;
+}
+
+std::array<double, 3> middle(const plc_image& image, plc_space space) {
+  return place_of(image, kMiddle, space);
 }
 
 plc_parameters starting(plc_init init) {
@@ -231,6 +236,28 @@ TEST_CASE("a mesh given in the wrong space is inside out or elsewhere, and refus
   CHECK(surface == nullptr);
 }
 
+TEST_CASE("what is wrong with a mesh is told at the places that were given", "[pellicle]") {
+  const Context context = samples::make_context();
+  const plc_image image = framed(true);
+  const Surface first = samples::extract(context.get(), image, starting(PLC_INIT_BUBBLE));
+  Mesh mesh(first.get(), PLC_SPACE_RAS);
+  mesh.abc[1] = mesh.abc[0];
+  double middle[3];
+  for (size_t a = 0; a < 3; ++a) {
+    middle[a] = (2 * mesh.xyz[3 * mesh.abc[0] + a] + mesh.xyz[3 * mesh.abc[2] + a]) / 3;
+  }
+  char place[96];
+  std::snprintf(place, sizeof place, "at (%.6g, %.6g, %.6g)", middle[0], middle[1], middle[2]);
+  plc_surface* surface = nullptr;
+  for (const plc_anisotropy method : {PLC_ANISOTROPY_VOXEL, PLC_ANISOTROPY_PHYSICAL}) {
+    plc_parameters p = starting(PLC_INIT_MESH);
+    p.anisotropy = method;
+    plc_extras extras = mesh.extras(PLC_SPACE_RAS);
+    CHECK(plc_extract(context.get(), &image, &p, &extras, &surface) == PLC_INVALID_DATA);
+    CHECK_THAT(plc_context_message(context.get()), Contains("repeats a vertex") && Contains(place));
+  }
+}
+
 TEST_CASE("starts that lack what they start from are refused", "[pellicle]") {
   const auto nothing = [](plc_extras&) {};
   CHECK(failure(PLC_INIT_SEEDS, nothing) == "seeds: none given");
@@ -273,11 +300,10 @@ TEST_CASE("places and radii that cannot be are refused by number", "[pellicle]")
   CHECK_THAT(seeds({{9, 9, 9}, kNan}), Contains("seed 1: radius"));
   CHECK_THAT(seeds({{9, 9, 9}, kInfinity}), Contains("seed 1: radius"));
   CHECK_THAT(seeds({{9, 9, 9}, 0.1}), Contains("too small for level 0"));
-  for (const plc_seed& far :
-       {plc_seed{{9, 9, 9}, 1e300}, plc_seed{{1e30, 9, 9}, 2}, plc_seed{{9, 9, 9}, 3000}}) {
-    CHECK_THAT(seeds(far), Contains("beyond the image"));
+  for (const double radius : {1e300, 3000.0}) {
+    CHECK_THAT(seeds({{9, 9, 9}, radius}), Contains("beyond the image"));
   }
-  CHECK_THAT(seeds({{9, 9, 9}, 3}), Contains("touches the seed at voxel"));
+  CHECK(seeds({{9, 9, 9}, 3}) == "seed 1: touches seed 0 on level 0");
 
   const auto pin = [](const plc_pin& one) {
     return failure(PLC_INIT_BUBBLE, [&](auto& e) {
@@ -300,6 +326,133 @@ TEST_CASE("places and radii that cannot be are refused by number", "[pellicle]")
     CHECK_THAT(attachment({{0, 0, 0}, 3, strength}),
                Contains("attachment 0: strength") && Contains("is not within 0 .. 1e6"));
   }
+}
+
+TEST_CASE("places outside the image are refused with the place, and the image's bounds",
+          "[pellicle]") {
+  const Context context = samples::make_context();
+  const plc_image image = framed(true);
+  plc_parameters p = starting(PLC_INIT_SEEDS);
+  p.max_iterations = 1;
+  p.late_bubbles = 0;
+  // Just within half a voxel of the outermost centres, and just beyond it, on each side.
+  for (const plc_space space : kSpaces) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      for (const bool high : {false, true}) {
+        for (const bool beyond : {false, true}) {
+          std::array<double, 3> voxel = kMiddle;
+          const double past = beyond ? 0.51 : 0.49;
+          voxel[axis] = high ? static_cast<double>(image.dims[axis] - 1) + past : -past;
+          const auto at = place_of(image, voxel, space);
+          const plc_seed seed{{at[0], at[1], at[2]}, 3};
+          const plc_pin pin{{at[0], at[1], at[2]}, 3};
+          const plc_attachment attachment{{at[0], at[1], at[2]}, 3, 1};
+          for (const std::string name : {"seed 0", "pin 0", "attachment 0"}) {
+            CAPTURE(space, axis, high, beyond, name);
+            plc_extras e = samples::no_extras();
+            e.space = space;
+            const auto middle_place = middle(image, space);
+            const plc_seed inside{{middle_place[0], middle_place[1], middle_place[2]}, 3};
+            e.seeds = name == "seed 0" ? &seed : &inside;
+            e.seed_count = 1;
+            e.pins = &pin;
+            e.pin_count = name == "pin 0" ? 1 : 0;
+            e.attachments = &attachment;
+            e.attachment_count = name == "attachment 0" ? 1 : 0;
+            plc_surface* surface = nullptr;
+            const plc_status status = plc_extract(context.get(), &image, &p, &e, &surface);
+            const Surface owner(surface);
+            CHECK(status == (beyond ? PLC_INVALID_ARGUMENT : PLC_OK));
+            if (beyond) {
+              CHECK_THAT(plc_context_message(context.get()),
+                         Contains(name + ": lies at (") && Contains("outside the image"));
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("the bounds of the image are told in the space of the places", "[pellicle]") {
+  const auto message = [](plc_space space, const plc_pin& pin) {
+    return failure(PLC_INIT_BUBBLE, [&](auto& e) {
+      e.space = space;
+      e.pins = &pin;
+      e.pin_count = 1;
+    });
+  };
+  CHECK(message(PLC_SPACE_VOXEL, {{9, -3, 9}, 3}) ==
+        "pin 0: lies at (9, -3, 9), outside the image, which reaches from (-0.5, -0.5, -0.5) to "
+        "(19.5, 15.5, 13.5) (voxels)");
+  CHECK(message(PLC_SPACE_LPS, {{9, 1e300, 9}, 3}) ==
+        "pin 0: lies at (9, 1e+300, 9), outside the image, which reaches from (-0.5, -0.625, "
+        "-0.75) to (19.5, 19.375, 20.25) (LPS, mm)");
+  CHECK_THAT(message(PLC_SPACE_RAS, {{9, 9, 9}, 3}),
+             Contains("from (-19.5, -19.375, -0.75) to (0.5, 0.625, 20.25) (RAS, mm)"));
+}
+
+TEST_CASE("places, normals and measures are those of a sheared image", "[pellicle]") {
+  const Context context = samples::make_context();
+  // Two balls, of which only one is started in.
+  const samples::Volume volume =
+      samples::sampled(samples::empty_volume({44, 20, 20}, {1, 1, 1}), [](const auto& p) {
+        return std::max(0.0, 1 - samples::norm(std::abs(p[0]) - 11, p[1], p[2]) / (2 * kRadius));
+      });
+  plc_image straight = samples::image_of(volume);
+  plc_image sheared = straight;
+  // The second axis leans by 30 degrees towards the first one, the third one is mirrored.
+  const double leaning[9] = {1, 0.5, 0, 0, 0.86602540378443865, 0, 0, 0, -1};
+  std::copy_n(leaning, 9, sheared.direction);
+  const double part = 0.86602540378443865;
+  std::vector<Surface> surfaces;
+  for (const plc_image& image : {straight, sheared}) {
+    const auto at = place_of(image, {10.5, 9.5, 9.5}, PLC_SPACE_LPS);
+    const plc_seed seed{{at[0], at[1], at[2]}, 5};
+    plc_extras extras = samples::no_extras();
+    extras.seeds = &seed;
+    extras.seed_count = 1;
+    surfaces.push_back(samples::extract(context.get(), image, starting(PLC_INIT_SEEDS), &extras));
+  }
+  const plc_surface* surface = surfaces[1].get();
+  const plc_measures voxels = samples::measured(context.get(), surface, PLC_SPACE_VOXEL);
+  CHECK(voxels.components == 2);
+  for (const plc_space space : {PLC_SPACE_LPS, PLC_SPACE_RAS}) {
+    CHECK(samples::measured(context.get(), surface, space).volume ==
+          Approx(part * voxels.volume).epsilon(1e-6));
+  }
+  CHECK(samples::level_of(surface, 0).late_bubbles == 1);
+  CHECK(samples::level_of(surface, 0).late_volume ==
+        Approx(part * samples::level_of(surfaces[0].get(), 0).late_volume).epsilon(0.01));
+  const auto indices = samples::positions(surface, PLC_SPACE_VOXEL);
+  const auto places = samples::positions(surface, PLC_SPACE_LPS);
+  std::vector<float> normals(places.size());
+  REQUIRE(plc_surface_normals(context.get(), surface, PLC_SPACE_LPS, normals.data(),
+                              static_cast<int64_t>(normals.size() / 3)) == PLC_OK);
+  double least = 1;
+  double off = 0;
+  for (size_t v = 0; v < places.size(); v += 3) {
+    std::array<double, 3> voxel{}, to_centre{};
+    for (size_t a = 0; a < 3; ++a) voxel[a] = static_cast<double>(indices[v + a]);
+    const auto expected = place_of(sheared, voxel, PLC_SPACE_LPS);
+    // Of a leaning ball: its axis through the place, by the inverse transposed.
+    const double middle_x = voxel[0] < 21.5 ? 10.5 : 32.5;
+    const std::array<double, 3> ray{voxel[0] - middle_x, voxel[1] - 9.5, voxel[2] - 9.5};
+    to_centre = {ray[0], (ray[1] - 0.5 * ray[0]) / part, -ray[2]};
+    const double length = samples::norm(to_centre[0], to_centre[1], to_centre[2]);
+    double along = 0;
+    for (size_t a = 0; a < 3; ++a) {
+      off = std::max(off, std::abs(expected[a] - static_cast<double>(places[v + a])));
+      along += static_cast<double>(normals[v + a]) * to_centre[a] / length;
+    }
+    least = std::min(least, along);
+  }
+  CHECK(off < 1e-4);
+  CHECK(least > 0.8);
+  plc_check check{};
+  check.struct_size = sizeof check;
+  REQUIRE(plc_surface_check(context.get(), surface, &check) == PLC_OK);
+  CHECK(check.valid == 1);
 }
 
 TEST_CASE("masks that do not fit are refused", "[pellicle]") {

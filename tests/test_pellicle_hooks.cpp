@@ -1,6 +1,7 @@
 // The C API: verdicts, attachments and pins of the user, features and late bubbles.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "tests/sample_hosts.h"
@@ -60,6 +61,44 @@ TEST_CASE("a verdict of more runs the level on", "[pellicle]") {
   const Surface surface = extract(context.get(), image, p, &extras);
   CHECK(iterations == std::vector<int64_t>{5, 10, 15, 5});
   CHECK(level_of(surface.get(), 0).iterations == 15);
+}
+
+TEST_CASE("an internal error tells its cause in one line", "[pellicle]") {
+  const Context context = make_context();
+  const Volume volume = ball();
+  const plc_image image = image_of(volume);
+  const plc_parameters p = gentle();
+  const auto message_of = [&](plc_progress_fn progress) {
+    plc_extras extras = no_extras();
+    extras.progress = progress;
+    plc_surface* surface = nullptr;
+    CHECK(plc_extract(context.get(), &image, &p, &extras, &surface) == PLC_INTERNAL);
+    CHECK(surface == nullptr);
+    return std::string(plc_context_message(context.get()));
+  };
+  // No callback may throw; it stands for what the engine itself would throw by mistake.
+  CHECK(message_of([](const plc_progress*, void*) -> int {
+          throw std::logic_error("ring 7\nhas no end");
+        }) == "internal error: ring 7 has no end");
+  CHECK(message_of([](const plc_progress*, void*) -> int { throw 7; }) ==
+        "internal error: something was thrown that is no std::exception");
+}
+
+TEST_CASE("an internal error of another thread tells its cause", "[pellicle]") {
+  plc_context_options options;
+  plc_context_options_defaults(&options);
+  options.parallel_for = [](size_t, plc_task_fn, void*, void*) {
+    throw std::logic_error("no such thread");
+  };
+  plc_context* made = nullptr;
+  REQUIRE(plc_context_create(&options, &made, nullptr, 0) == PLC_OK);
+  const Context context(made);
+  const Volume volume = ball();
+  const plc_image image = image_of(volume);
+  const plc_parameters p = gentle();
+  plc_surface* surface = nullptr;
+  CHECK(plc_extract(context.get(), &image, &p, nullptr, &surface) == PLC_INTERNAL);
+  CHECK(std::string(plc_context_message(context.get())) == "internal error: no such thread");
 }
 
 TEST_CASE("an attachment pulls the surface through its place, and only there", "[pellicle]") {

@@ -175,17 +175,85 @@ TEST_CASE("a context tells what it derives and how levels end", "[pellicle_hosts
   const samples::Volume volume = samples::ball({24, 24, 24});
   plc_parameters p = samples::parameters(0.5, 2);
   samples::extract(context.get(), samples::image_of(volume), p);
-  REQUIRE(told.lines.size() == 4);
+  REQUIRE(told.lines.size() == 5);
   CHECK_THAT(told.lines[0], Catch::Matchers::Contains("window"));
-  CHECK_THAT(told.lines[1], Catch::Matchers::StartsWith("level 2: converged"));
-  CHECK_THAT(told.lines[3], Catch::Matchers::StartsWith("level 0: converged"));
+  CHECK_THAT(told.lines[1], Catch::Matchers::StartsWith("expected: about "));
+  CHECK_THAT(told.lines[2], Catch::Matchers::StartsWith("level 2: converged"));
+  CHECK_THAT(told.lines[4], Catch::Matchers::StartsWith("level 0: converged"));
   CHECK(told.warnings == 0);
   CHECK(told.thread == std::this_thread::get_id());
   told = {};
   p.max_iterations = 3;
   samples::extract(context.get(), samples::image_of(volume), p);
   CHECK(told.warnings == 3);
-  CHECK_THAT(told.lines[1], Catch::Matchers::Contains("not converged"));
+  CHECK_THAT(told.lines[2], Catch::Matchers::Contains("not converged"));
+}
+
+TEST_CASE(
+    "a surface out of proportion to the image is told before it is made, one that cannot be "
+    "held is refused",
+    "[pellicle_hosts]") {
+  std::vector<std::string> warnings;
+  const auto listen = [](plc_log_level level, const char* line, void* user) {
+    if (level == PLC_LOG_WARNING) static_cast<std::vector<std::string>*>(user)->emplace_back(line);
+  };
+  // In millimetres of voxels of 1 x 1 x 8 every voxel of a surface has many vertices.
+  samples::Volume volume = samples::empty_volume({12, 12, 12}, {1, 1, 8});
+  volume.values.assign(12 * 12 * 12, 0);
+  for (size_t i = 0; i < volume.values.size(); i += 2) volume.values[i] = 1;
+  plc_parameters p = samples::parameters(0.5, 0);
+  p.anisotropy = PLC_ANISOTROPY_PHYSICAL;
+  p.max_iterations = 1;
+  plc_image image = samples::image_of(volume);
+  const auto status_within = [&](int64_t limit, std::string& message) {
+    const Context context = context_of([&](plc_context_options& options) {
+      options.log = listen;
+      options.log_user = &warnings;
+      options.memory_limit = limit;
+    });
+    plc_extras extras = samples::no_extras();
+    extras.progress = [](const plc_progress*, void*) { return 1; };
+    plc_surface* surface = nullptr;
+    const plc_status status = plc_extract(context.get(), &image, &p, &extras, &surface);
+    message = plc_context_message(context.get());
+    return status;
+  };
+  std::string message;
+  CHECK(status_within(0, message) == PLC_CANCELLED);
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0], Catch::Matchers::StartsWith("expected: about ") &&
+                              Catch::Matchers::EndsWith("more than the image has voxels"));
+  CHECK(status_within(300 << 10, message) == PLC_OUT_OF_MEMORY);
+  CHECK_THAT(message, Catch::Matchers::StartsWith("the surface would have about ") &&
+                          Catch::Matchers::EndsWith("MiB, more than there is"));
+}
+
+TEST_CASE("a level on which the surface vanishes is told as that, not as one that did not converge",
+          "[pellicle_hosts]") {
+  std::vector<std::string> lines;
+  int warnings = 0;
+  const auto listen = [](plc_log_level level, const char* line, void* user) {
+    auto& [all, count] = *static_cast<std::pair<std::vector<std::string>*, int*>*>(user);
+    all->emplace_back(line);
+    *count += level == PLC_LOG_WARNING ? 1 : 0;
+  };
+  std::pair<std::vector<std::string>*, int*> told{&lines, &warnings};
+  const Context context = context_of([&](plc_context_options& options) {
+    options.log = listen;
+    options.log_user = &told;
+  });
+  const samples::Volume volume = samples::ball({24, 24, 24});
+  const plc_image image = samples::image_of(volume);
+  plc_parameters p = samples::parameters(0.5, 0);
+  p.spring = 20;  // pulls every bubble to a point
+  p.rest_length = PLC_REST_ZERO;
+  p.late_bubbles = 0;
+  plc_surface* made = nullptr;
+  plc_extract(context.get(), &image, &p, nullptr, &made);
+  const Surface surface(made);
+  REQUIRE(!lines.empty());
+  CHECK_THAT(lines.back(), Catch::Matchers::Contains("level 0: nothing is left of the surface"));
+  CHECK(warnings == 0);
 }
 
 TEST_CASE("hooks that make no sense are refused", "[pellicle_hosts]") {

@@ -1,6 +1,7 @@
 // Runs of the C API as bytes: saved, restored, altered.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -36,6 +37,31 @@ TEST_CASE("a saved run goes on with the same bits, wherever it was saved", "[pel
     REQUIRE(there.progress.energy == state.progress.energy);
     REQUIRE(hash_now(other.get(), follower.get()) == hash_now(one.get(), run.get()));
   }
+}
+
+TEST_CASE("saving allocates nothing", "[pellicle_state]") {
+  int64_t allocations = 0;
+  plc_context_options options;
+  plc_context_options_defaults(&options);
+  options.threads = 1;
+  options.allocate = [](size_t size, size_t alignment, void* user) {
+    ++*static_cast<int64_t*>(user);
+    return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  };
+  options.release = [](void* data, size_t, size_t, void*) { std::free(data); };
+  options.allocator_user = &allocations;
+  plc_context* made = nullptr;
+  REQUIRE(plc_context_create(&options, &made, nullptr, 0) == PLC_OK);
+  const Context context(made);
+  const Scene s;
+  const Pyramid pyramid = pyramid_of(context.get(), s.image, s.parameters);
+  const Run run = run_of(context.get(), pyramid.get(), s.parameters);
+  advance(context.get(), run.get(), PLC_ONE_LEVEL);
+  saved(context.get(), run.get());  // the hash of the voxels is computed once
+  const int64_t before = allocations;
+  CHECK(before > 0);
+  CHECK(saved(context.get(), run.get()).size() > 1000);
+  CHECK(allocations == before);
 }
 
 TEST_CASE("what sleeps is asleep in a restored run", "[pellicle_state]") {

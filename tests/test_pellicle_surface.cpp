@@ -147,6 +147,43 @@ TEST_CASE("the surface is valid by the check of any mesh", "[pellicle]") {
   }
 }
 
+TEST_CASE("small voxels far away are told in doubles, where floats of them meet", "[pellicle]") {
+  const Context context = samples::make_context();
+  plc_image image = framed(kFrames[4]);
+  const auto p = samples::parameters(0.5, 0);
+  const Surface near = samples::extract(context.get(), image, p);
+  for (double& x : image.spacing) x *= 1e-6;
+  image.origin[0] = 1e5;
+  const Surface far = samples::extract(context.get(), image, p);
+  REQUIRE(plc_surface_hash(near.get()) == plc_surface_hash(far.get()));
+  for (const plc_space space : kSpaces) {
+    const auto floats = samples::positions(far.get(), space);
+    const auto xyz = samples::positions_f64(far.get(), space);
+    const auto abc = samples::faces(far.get(), space);
+    REQUIRE(std::equal(floats.begin(), floats.end(), xyz.begin(),
+                       [](float x, double y) { return x == static_cast<float>(y); }));
+    const auto valid = [&](const std::vector<double>& points) {
+      plc_check check{};
+      check.struct_size = sizeof check;
+      REQUIRE(plc_check_mesh(context.get(), points.data(), static_cast<int64_t>(points.size() / 3),
+                             abc.data(), static_cast<int64_t>(abc.size() / 3), &check) == PLC_OK);
+      return check.valid != 0;
+    };
+    CHECK(valid(xyz));
+    CHECK(valid({floats.begin(), floats.end()}) == (space == PLC_SPACE_VOXEL));
+    const auto expected = samples::normals(near.get(), space);
+    const auto normals = samples::normals(far.get(), space);
+    REQUIRE(std::equal(normals.begin(), normals.end(), expected.begin(),
+                       [](float x, float y) { return std::abs(x - y) < 1e-4F; }));
+  }
+  double none = 7;
+  CHECK(plc_surface_positions_f64(context.get(), near.get(), PLC_SPACE_LPS, &none, 1) ==
+        PLC_INVALID_ARGUMENT);
+  CHECK(plc_surface_positions_f64(context.get(), nullptr, PLC_SPACE_LPS, &none, 1) ==
+        PLC_INVALID_ARGUMENT);
+  CHECK(none == 7);
+}
+
 TEST_CASE("the frame changes nothing but the places: the hash is of mesh space", "[pellicle]") {
   const Context context = samples::make_context();
   const plc_parameters p = samples::parameters(0.5, 1);
@@ -219,7 +256,7 @@ TEST_CASE("the parameters as used have everything filled in", "[pellicle]") {
   CHECK(used.struct_size == sizeof used);
   CHECK(used.levels == 3);
   CHECK(used.level_iso_count == 4);
-  CHECK(used.level_iso[0] == Approx(0.5));
+  CHECK(used.level_iso[3] == Approx(0.5));
   CHECK(used.window_low < 0.5);
   CHECK(used.window_high > 0.5);
   CHECK(std::isfinite(used.pad_value));
@@ -235,7 +272,7 @@ TEST_CASE("the parameters as used have everything filled in", "[pellicle]") {
   CHECK(plc_surface_hash(again.get()) == plc_surface_hash(surface.get()));
 }
 
-TEST_CASE("iso-values of levels are taken as given", "[pellicle]") {
+TEST_CASE("iso-values of levels are taken as given, coarse to fine", "[pellicle]") {
   const Context context = samples::make_context();
   plc_parameters p = samples::parameters(0.5, 1);
   p.window_low = 0;
@@ -244,8 +281,8 @@ TEST_CASE("iso-values of levels are taken as given", "[pellicle]") {
   p.level_iso[0] = 0.45;
   p.level_iso[1] = 0.4;
   const Surface surface = samples::extract(context.get(), framed(kFrames[0]), p);
-  CHECK(samples::level_of(surface.get(), 0).iso == Approx(0.4));
-  CHECK(samples::level_of(surface.get(), 1).iso == Approx(0.45));
+  CHECK(samples::level_of(surface.get(), 0).iso == Approx(0.45));
+  CHECK(samples::level_of(surface.get(), 1).iso == Approx(0.4));
 }
 
 TEST_CASE("a dark object in a bright image is the same surface", "[pellicle]") {

@@ -9,7 +9,7 @@ python=${PYTHON:-/usr/bin/python3}
 
 missing=$("$python" - <<'END'
 import importlib.util, os, sysconfig
-modules = "ensurepip mypy numpy pip pytest setuptools venv wheel".split()
+modules = "ensurepip mypy nibabel numpy pip pytest setuptools venv wheel".split()
 headers = [sysconfig.get_path("include") + "/Python.h", "/usr/include/pybind11/pybind11.h"]
 print(*[name for name in modules if not importlib.util.find_spec(name)],
       *[path for path in headers if not os.path.exists(path)])

@@ -319,3 +319,21 @@ TEST_CASE("a run from the same input twice in one mesh is the same", "[recovery]
               .ok());
   CHECK(samples::sorted_faces(mesh) == samples::sorted_faces(first.mesh));
 }
+
+TEST_CASE("a level that would have more vertices than there are ids is told before it starts",
+          "[recovery]") {
+  const plc::Schedule schedule(1);
+  const Run run = ball_run(2);
+  const plc::Pyramid pyramid = samples::pyramid_of(run);
+  plc::Mesh mesh;
+  std::vector<plc::LevelRecord> records;
+  // Enough for the level before the last.
+  mesh.most_vertices = recover(run).mesh.vertex_count() * 2 / 3;
+  const plc::Status status = plc::pyramidal_recover_shape(
+      pyramid, run.recovery, schedule, plc::best_simd_target(), {}, mesh, records);
+  CHECK(status.code() == plc::ErrorCode::kOutOfMemory);
+  CHECK_THAT(status.message(), Catch::Contains("vertices at this resolution"));
+  CHECK(plc::broken_invariant(mesh) == "");
+  CHECK(records.size() == 3);
+  CHECK(records[2].iterations == 0);
+}

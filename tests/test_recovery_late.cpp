@@ -83,6 +83,32 @@ TEST_CASE("late bubbles find the part and the cavity that the surface has passed
   }
 }
 
+TEST_CASE("all rounds after late bubbles together take no more iterations than the one before them",
+          "[recovery]") {
+  // A sphere that springs draw together over a large ball: one ball is far outside, and found
+  // first; a small one is passed by the sphere in the first round after that, and found then.
+  const auto volume =
+      samples::sampled(samples::empty_volume({60, 40, 40}), [](const samples::Point& p) {
+        double most = 0;
+        for (const auto& [x, radius] : {std::pair{-10.0, 5.0}, {-0.5, 1.8}, {24.0, 3.5}}) {
+          const double depth = radius - samples::norm(p[0] - x, p[1], p[2]);
+          most = std::max(most, std::clamp(0.5 + 0.5 * depth, 0.0, 1.0));
+        }
+        return most;
+      });
+  Run run = samples::make_run("two late balls", volume, 0.5, 0);
+  run.recovery.start.init = plc::Init::kSeeds;
+  run.recovery.start.seeds = {{{19.5, 19.5, 19.5}, {13.5, 13.5, 13.5}}};
+  run.recovery.model.spring = 1;
+  run.recovery.model.rest_length = plc::RestLength::kZero;
+  run.recovery.epsilon = 1;  // any surface is searched
+  run.recovery.max_iterations = 11;
+  const Recovered r = recover(run);
+  REQUIRE(r.status.ok());
+  CHECK(r.records[0].late.bubbles >= 1);
+  CHECK(r.records[0].iterations == 22);
+}
+
 TEST_CASE("the volume of late bubbles is in cubic millimetres, whatever the space", "[recovery]") {
   for (const plc::Anisotropy method :
        {plc::Anisotropy::kPhysical, plc::Anisotropy::kVoxel, plc::Anisotropy::kMetric}) {

@@ -201,3 +201,29 @@ TEST_CASE("a refinement is the same for any executor", "[refinement]") {
   plc::refine(other, fixtures::ThreadExecutor(3));
   CHECK(samples::sorted_faces(one) == samples::sorted_faces(other));
 }
+
+TEST_CASE("as many refinements as bring the density nearest", "[refinement]") {
+  for (int steps = 0; steps < 40; ++steps) {
+    const double finest = std::pow(plc::kRefinement, -steps);
+    for (const double off : {-0.499, -0.2, 0.0, 0.2, 0.499}) {
+      const double to = 3.7 * finest * std::pow(plc::kRefinement, off);
+      CHECK(plc::refinements_between(3.7, to) == steps);
+    }
+  }
+  CHECK(plc::refinements_between(1, 100) == 0);
+  CHECK(plc::refinements_between(1e300, 1e-300) > 1000);  // a ratio that is infinite ends
+}
+
+TEST_CASE("a refinement asks for all its ids before it changes anything", "[refinement]") {
+  Mesh mesh;
+  samples::fill_mesh(mesh, samples::sphere(2), 0.5);
+  const uint32_t before = mesh.slots();
+  mesh.most_vertices = 3 * before - 1;
+  CHECK_THROWS_AS(plc::refine(mesh, samples::kSerial), plc::TooManyVertices);
+  CHECK(mesh.slots() == before);
+  CHECK(mesh.delta == 0.5);
+  CHECK(plc::broken_invariant(mesh) == "");
+  mesh.most_vertices = 3 * before;
+  plc::refine(mesh, samples::kSerial);
+  CHECK(mesh.vertex_count() == 3 * before - 4);
+}

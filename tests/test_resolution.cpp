@@ -243,3 +243,47 @@ TEST_CASE("what the guard refuses is counted, left as it was and stays due", "[r
   }
   CHECK(refusals > 0);
 }
+
+TEST_CASE("no vertex gets more neighbours than it may have", "[resolution]") {
+  for (const bool limited : {false, true}) {
+    uint32_t most = 0;
+    int64_t refused = 0;
+    for (uint64_t seed = 1; seed <= 12; ++seed) {
+      samples::Random random(seed);
+      Soup soup =
+          seed % 2 == 0 ? spheres(random.uniform(0.05, 0.3)) : samples::torus(20, 7, 1, 0.4);
+      for (double& c : soup.xyz) c += random.uniform(-0.03, 0.03);
+      Mesh mesh;
+      samples::fill_mesh(mesh, soup, random.uniform(0.1, 0.4));
+      if (samples::meeting_count(mesh) != 0) continue;
+      if (limited) mesh.most_neighbors = 8;
+      for (uint32_t pass = 1; pass <= 3; ++pass) {
+        refused += resolve(mesh, samples::kSerial, pass).refused;
+        REQUIRE(plc::broken_invariant(mesh) == "");
+        for (uint32_t v = 0; v < mesh.slots(); ++v) most = std::max(most, mesh.valence(v));
+      }
+    }
+    CHECK((limited ? most <= 8 : most > 8));
+    CHECK((!limited || refused > 0));
+  }
+}
+
+TEST_CASE("whether neighbours fit is asked for every vertex that gets more", "[resolution]") {
+  Mesh mesh;
+  samples::fill_mesh(mesh, samples::octahedron(), 1);
+  const plc::Edge edge = plc::edge_at(mesh, 0, 0);
+  const auto fits = [&](plc::Operation operation, uint32_t most) {
+    mesh.most_neighbors = most;
+    return plc::fits_neighbors(mesh, {operation, 1, edge});
+  };
+  // Every vertex has four neighbours.
+  for (const auto operation : {plc::Operation::kInversion, plc::Operation::kCreation}) {
+    CHECK(fits(operation, 5));
+    CHECK_FALSE(fits(operation, 4));
+  }
+  CHECK(fits(plc::Operation::kDeletion, 4));
+  CHECK_FALSE(fits(plc::Operation::kDeletion, 3));
+  CHECK(fits(plc::Operation::kAxial, 12));
+  CHECK_FALSE(fits(plc::Operation::kAxial, 11));
+  CHECK(fits(plc::Operation::kAnnular, 4));
+}

@@ -94,6 +94,19 @@ TEST_CASE("what is too near and what is at risk is found around all, many and fe
   CHECK(searched(around, mesh, {}).at_risk.empty());
 }
 
+TEST_CASE("where everything is too near, so many pairs of a vertex are listed and no more",
+          "[surroundings]") {
+  Mesh mesh;
+  fill_scene(mesh);
+  mesh.delta = 10;
+  Surroundings around(mesh, samples::kSerial, plc::best_simd_target());
+  const auto due = every(mesh, 1);
+  const size_t pairs = searched(around, mesh, due).too_near.size();
+  CHECK(pairs >= mesh.slots());
+  CHECK(pairs <= plc::kMostNear * mesh.slots());
+  CHECK(expected(mesh, due).too_near.size() > plc::kMostNear * mesh.slots());
+}
+
 TEST_CASE("a search for what is too near finds that alone", "[surroundings]") {
   Mesh mesh;
   fill_scene(mesh);

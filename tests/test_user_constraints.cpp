@@ -201,6 +201,24 @@ TEST_CASE("the pull fades to 0 at the radius, in millimetres, and stays 0", "[us
   CHECK(pull_at(user, {6.0F, 0, 5.9F}, kUp).z == 0);
 }
 
+TEST_CASE("radii are lengths in mm where the axes of the image lean, too", "[user_constraints]") {
+  UserConstraints user;
+  user.millimetres = {1, 1, 2};
+  user.cosines = {0.5F, 0, 0};  // 60 degrees between x and y
+  user.pins.push_back({{0, 0, 0}, 1});
+  // Both axes on: sqrt 3 times as far as one of them. One on, the other back: as far as one.
+  CHECK(plc::pinned(user, {0.99F, 0, 0}));
+  CHECK(plc::pinned(user, {0.57F, 0.57F, 0}));
+  CHECK_FALSE(plc::pinned(user, {0.59F, 0.59F, 0}));
+  CHECK(plc::pinned(user, {0.99F, -0.99F, 0}));
+  CHECK_FALSE(plc::pinned(user, {1.01F, -1.01F, 0}));
+  // A place is felt from there, too, though the box of the vertex is farther by its sides.
+  user.attachments.push_back({{0.9F, -0.9F, 0}, 1, 1});
+  CHECK(pull_at(user, {0, 0, 0}, {1, 0, 0}).x > 0);
+  user.cosines = {};
+  CHECK(pull_at(user, {0, 0, 0}, {1, 0, 0}).x == 0);
+}
+
 TEST_CASE("many attachments on one spot are no stiffer than the strongest", "[user_constraints]") {
   UserConstraints user;
   for (int i = 0; i < 50; ++i) user.attachments.push_back({{0, 0, 1}, 100, i == 7 ? 3.0F : 1.0F});

@@ -195,6 +195,58 @@ TEST_CASE("NIfTI keeps the engine's types and converts the others", "[volume_io]
   check_nifti<uint64_t, float>(1280, PLC_F32);
 }
 
+TEST_CASE("NIfTI of version 2, and of the other order of bytes, is read like any other",
+          "[volume_io]") {
+  const fixtures::Folder folder;
+  const std::vector<int16_t> values = ramp<int16_t>();
+  std::string swapped = samples::raw(values);
+  for (size_t i = 0; i < swapped.size(); i += 2) std::swap(swapped[i], swapped[i + 1]);
+  for (const bool big : {false, true}) {
+    for (const bool scaled : {false, true}) {
+      const std::string file =
+          samples::nifti2({5, 4, 3}, 4, scaled ? 0.5 : 0, scaled ? 3 : 0, big) +
+          (big ? swapped : samples::raw(values));
+      folder.put("a.nii", file);
+      folder.put("a.nii.gz", samples::deflated(file, true));
+      for (const char* const name : {"a.nii", "a.nii.gz"}) {
+        CAPTURE(big, scaled, name);
+        const LoadedVolume volume = read_volume(folder / name);
+        REQUIRE(volume.image.type == (scaled ? PLC_F32 : PLC_I16));
+        for (size_t i = 0; i < values.size(); ++i) {
+          if (scaled) {
+            CHECK(voxels<float>(volume)[i] == 0.5F * static_cast<float>(values[i]) + 3);
+          } else {
+            CHECK(voxels<int16_t>(volume)[i] == values[i]);
+          }
+        }
+        CHECK(volume.image.spacing[2] == 2.5);
+        CHECK(volume.image.origin[1] == -20);
+      }
+    }
+  }
+}
+
+TEST_CASE("NIfTI headers that are none, or name voxels elsewhere, are refused", "[volume_io]") {
+  const fixtures::Folder folder;
+  const std::string good = samples::nifti({5, 4, 3}, 2, 8, std::string(kVoxels, 'a'));
+  const auto message = [&](size_t at, const std::string& bytes) {
+    std::string file = good;
+    file.replace(at, bytes.size(), bytes);
+    return failure_of([&] { read_volume(folder.put("a.nii", file)); });
+  };
+  CHECK_THAT(message(344, std::string("ni1\0", 4)), Catch::Contains("in another file"));
+  CHECK_THAT(message(344, std::string(4, '\0')), Catch::Contains("not a readable NIfTI"));
+  CHECK_THAT(message(0, std::string(4, '\0')), Catch::Contains("not a readable NIfTI"));
+  CHECK_THAT(message(40, std::string(2, '\0')), Catch::Contains("header is damaged"));
+  CHECK_THAT(message(40, "\x08"), Catch::Contains("header is damaged"));
+  CHECK_THAT(message(70, "\x20"), Catch::Contains("complex numbers"));
+  CHECK_THAT(message(70, "\x03"), Catch::Contains("NIfTI type 3"));
+  const auto offset = [&](float value) { return message(108, samples::raw<float>({value})); };
+  CHECK_THAT(offset(1e20F), Catch::Contains("header is damaged"));
+  CHECK_THAT(offset(std::nanf("")), Catch::Contains("header is damaged"));
+  CHECK_THAT(offset(1e9F), Catch::Contains("truncated"));
+}
+
 TEST_CASE("Wide integers whose values are small become i32", "[volume_io]") {
   const fixtures::Folder folder;
   std::vector<int64_t> values(kVoxels, -3);
@@ -478,6 +530,9 @@ TEST_CASE("A volume that cannot be written leaves nothing behind", "[volume_io]"
   CHECK_THAT(failure_of([&] { write_volume(folder / "none/a.nrrd", image); }),
              Catch::Contains("cannot be written"));
   CHECK_THAT(failure_of([&] { write_volume(folder / "a.nii", image); }), Catch::Contains(".nrrd"));
-  CHECK_THAT(failure_of([&] { write_volume(folder.path(), image); }), Catch::Contains("directory"));
+  CHECK_THAT(failure_of([&] { write_volume(folder.path(), image); }), Catch::Contains(".nrrd"));
   CHECK(folder.file_count() == 0);
+  std::filesystem::create_directory(folder / "b.nrrd");
+  CHECK_THAT(failure_of([&] { write_volume(folder / "b.nrrd", image); }),
+             Catch::Contains("directory"));
 }

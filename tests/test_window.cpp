@@ -9,7 +9,7 @@
 namespace {
 
 using plc::VoxelType;
-using plc::Window;
+using Window = plc::DerivedWindow;
 
 constexpr int64_t kSide = 24;
 

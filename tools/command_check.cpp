@@ -114,7 +114,7 @@ plc_check check_of(plc_context* context, const TriangleMesh& mesh) {
   const plc_status status =
       plc_check_mesh(context, mesh.xyz.data(), static_cast<int64_t>(mesh.xyz.size() / 3),
                      mesh.abc.data(), static_cast<int64_t>(mesh.abc.size() / 3), &check);
-  if (status != PLC_OK) throw failure_of(context, status);
+  if (status != PLC_OK) throw failure_of(context);
   return check;
 }
 

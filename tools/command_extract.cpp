@@ -1,31 +1,30 @@
 #include "tools/command_extract.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "tools/command_check.h"
 #include "tools/command_labels.h"
 #include "tools/engine_handles.h"
 #include "tools/extract_inputs.h"
 #include "tools/extract_job.h"
-#include "tools/interrupt.h"
 #include "tools/mesh_io.h"
+#include "tools/mesh_precision.h"
 #include "tools/progress_line.h"
 #include "tools/report.h"
 #include "tools/surface_mesh.h"
 #include "tools/trace_file.h"
 #include "tools/volume_io.h"
+#include "tools/volume_io_memory.h"
 
 namespace plc::tools {
 
 namespace {
-
-constexpr int kExitInvalid = 1;
 
 double now() {
   using Clock = std::chrono::steady_clock;
@@ -45,6 +44,12 @@ int on_progress(const plc_progress* progress, void* user) {
   return watch.interrupt.interrupted() ? 1 : 0;
 }
 
+// What the surface will cost, where that is out of proportion. How levels end the summary says.
+void on_log(plc_log_level level, const char* line, void*) {
+  if (level != PLC_LOG_WARNING || std::strncmp(line, "expected: ", 10) != 0) return;
+  std::fprintf(stderr, "pellicle: %s\n", line);
+}
+
 // The files of --each-level: a callback must not throw through the engine, so it keeps the failure.
 struct LevelFiles {
   plc_context* context;
@@ -56,8 +61,10 @@ struct LevelFiles {
 plc_verdict on_level(const plc_level_report* level, const plc_surface* surface, void* user) {
   auto& files = *static_cast<LevelFiles*>(user);
   try {
-    write_mesh(named(files.output, "level" + std::to_string(level->level)),
-               mesh_of(files.context, surface, files.space));
+    const std::string path = named(files.output, "level" + std::to_string(level->level));
+    TriangleMesh mesh = mesh_of(files.context, surface, files.space);
+    settle_surface(files.context, mesh, files.space, path);
+    write_mesh(path, mesh);
   } catch (const Failure& failure) {
     files.failure = failure;
     return PLC_VERDICT_STOP;
@@ -81,7 +88,7 @@ SurfaceHandle evolve(plc_context* context, const plc_image& image, const Extract
   plc_surface* surface = nullptr;
   const plc_status status = plc_extract(context, &image, &job.parameters, &extras, &surface);
   if (status == PLC_CANCELLED) return nullptr;
-  if (status != PLC_OK) throw failure_of(context, status);
+  if (status != PLC_OK) throw failure_of(context);
   SurfaceHandle result(surface);
   if (files.failure) throw *files.failure;
   return result;
@@ -102,24 +109,30 @@ class Extraction {
     check_paths(jobs_);
     for (const ExtractJob& job : jobs_) traces_.emplace_back(job.trace);
     interrupt.end_at_once();
-    context_ = make_context(options.context);
-    volume_ = read_volume(options.input);
+    volume_ = read_volume_apart(options.input, options.nifti_frame);
+    print_warnings(volume_);
     inputs_.emplace(options);
+    context_ = make_context(context_options());  // from here on there are threads
     read_ = now() - start_;
   }
 
   // The exit code.
   int run() {
-    int code = 0;
     for (size_t i = 0; i < jobs_.size(); ++i) {
-      const int own = run(i);
-      if (own == kExitInterrupted) return own;
-      code = std::max(code, own);
+      if (const int code = run(i); code != 0) return code;
     }
-    return code;
+    return 0;
   }
 
  private:
+  // What the machine has not is refused in a line, before the system ends the process without one.
+  plc_context_options context_options() const {
+    plc_context_options context = options_.context;
+    context.memory_limit = static_cast<int64_t>(available_memory());
+    if (options_.progress != Progress::kNone) context.log = on_log;
+    return context;
+  }
+
   int run(size_t index) {
     ExtractJob job = jobs_[index];
     ExtractOptions told = options_;
@@ -129,16 +142,13 @@ class Extraction {
     surface_ = evolve(context_.get(), volume_.image, job, *inputs_, options_, line, traces_[index],
                       interrupt_);
     line.clear();
-    if (surface_ == nullptr || interrupt_.interrupted()) {
-      std::fputs("pellicle: interrupted\n", stderr);
-      return kExitInterrupted;
-    }
+    if (surface_ == nullptr || interrupt_.interrupted()) return interrupt_.tell();
     if (plc_surface_face_count(surface_.get()) == 0) {
       throw Failure{"no surface is left: at this iso the object is smaller than the mesh resolves"};
     }
-    const int code = write(job, traces_[index], told);
+    write(job, traces_[index], told);
     line.done();
-    return code;
+    return 0;
   }
 
   // Figure 24: from the last surface, on the full image, where that is nearer.
@@ -146,7 +156,9 @@ class Extraction {
     plc_parameters& p = job.parameters;
     const double last = jobs_[index - 1].parameters.iso;
     if (!nearer(volume_.image, last, p.iso, p.inside_below != 0)) return;
-    inputs_->start_from(mesh_of(context_.get(), surface_.get(), options_.space));
+    TriangleMesh start = mesh_of(context_.get(), surface_.get(), options_.space);
+    if (!doubles_) round_to_floats(start.xyz);  // as that of the file is
+    inputs_->start_from(std::move(start));
     p.init = PLC_INIT_MESH;
     p.levels = 0;
     p.level_iso_count = 0;
@@ -154,19 +166,22 @@ class Extraction {
   }
 
   // What is written from here on is whole; a signal waits for it.
-  int write(const ExtractJob& job, const TraceFile& trace, const ExtractOptions& told) {
+  void write(const ExtractJob& job, const TraceFile& trace, const ExtractOptions& told) {
     interrupt_.only_note();
     const double written = now();
     const plc_measures measures = measures_of(context_.get(), surface_.get());
-    const TriangleMesh mesh = mesh_of(context_.get(), surface_.get(), options_.space);
+    TriangleMesh mesh = mesh_of(context_.get(), surface_.get(), options_.space);
     // The engine's promise is about its own mesh space; this one is rounded to another.
-    const plc_check check = check_of(context_.get(), mesh);
+    settle_surface(context_.get(), mesh, options_.space, job.output);
+    doubles_ = mesh.doubles;
     write_mesh(job.output, mesh);
     trace.commit();
     const Timings timings{read_, now() - written, now() - start_};
     if (!job.report.empty()) {
-      write_report(job.report, make_report(context_.get(), volume_.image, surface_.get(), measures,
-                                           timings, told));
+      auto report =
+          make_report(context_.get(), volume_.image, surface_.get(), measures, timings, told);
+      report["coordinates"] = precision_text(doubles_);
+      write_report(job.report, report);
     }
     if (options_.progress != Progress::kNone) {
       std::fputs(
@@ -175,10 +190,7 @@ class Extraction {
           stdout);
       std::fflush(stdout);
     }
-    if (check.valid != 0) return 0;
-    std::fprintf(stderr, "pellicle: %s: written, but not valid as `pellicle check` tells\n",
-                 job.output.c_str());
-    return kExitInvalid;
+    tell_precision(doubles_, job.output);
   }
 
   const ExtractOptions& options_;
@@ -191,12 +203,12 @@ class Extraction {
   LoadedVolume volume_{};
   std::optional<ExtractInputs> inputs_;
   SurfaceHandle surface_;  // the last one
+  bool doubles_ = false;   // it was written in
 };
 
 }  // namespace
 
-int run_extract(const ExtractOptions& options) {
-  InterruptGuard interrupt;
+int run_extract(const ExtractOptions& options, InterruptGuard& interrupt) {
   if (!options.labels.empty()) return run_labels(options, interrupt);
   return Extraction(options, interrupt).run();
 }

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "tools/command_check.h"
 #include "tools/engine_handles.h"
 #include "tools/extract_job.h"
 #include "tools/label_overlaps.h"
 #include "tools/labels.h"
 #include "tools/mesh_io.h"
+#include "tools/mesh_precision.h"
 #include "tools/progress_line.h"
 #include "tools/report.h"
 #include "tools/surface_mesh.h"
@@ -24,7 +24,10 @@ namespace plc::tools {
 
 namespace {
 
-constexpr int kExitOverlap = 1;
+// Files that are renamed together, so that the disk is not waited for at each.
+constexpr size_t kTogether = 64;
+// How many labels a line names.
+constexpr size_t kNamed = 10;
 constexpr double kInside = 255;  // of crop_label()
 
 // A label's surface is drawn where its indicator is 0.5 and one of these, so that those of two
@@ -65,6 +68,18 @@ std::string name_of(const Label& label) {
   return std::to_string(label.value);
 }
 
+// "label 8", or "12 labels (1, 2, 3 ...)".
+std::string listed(const std::string& one, const std::string& several,
+                   const std::vector<std::string>& names) {
+  if (names.size() == 1) return one + " " + names[0];
+  std::string text = std::to_string(names.size()) + " " + several + " (";
+  for (size_t i = 0; i < std::min(names.size(), kNamed); ++i) {
+    if (i > 0) text += ", ";
+    text += names[i];
+  }
+  return text + (names.size() > kNamed ? " ...)" : ")");
+}
+
 plc_parameters parameters_of(const ExtractOptions& options, const Piece& piece) {
   plc_parameters p = options.parameters;
   p.iso = (0.5 + kMargins[piece.margin]) * kInside;
@@ -78,10 +93,10 @@ plc_parameters parameters_of(const ExtractOptions& options, const Piece& piece) 
   return p;
 }
 
-// Voxel indices of the whole image, as floats again, which every format holds.
+// Voxel indices of the whole image.
 void shift(TriangleMesh& mesh, const std::array<int64_t, 3>& low) {
   for (size_t i = 0; i < mesh.xyz.size(); ++i) {
-    mesh.xyz[i] = static_cast<float>(mesh.xyz[i] + static_cast<double>(low[i % 3]));
+    mesh.xyz[i] += static_cast<double>(low[i % 3]);
   }
 }
 
@@ -94,8 +109,9 @@ class LabelExtraction {
     if (options.report == options.output)
       throw Failure{options.output + ": would be written twice"};
     interrupt.end_at_once();
+    volume_ = read_volume_apart(options.labels, options.nifti_frame);
+    print_warnings(volume_);
     context_ = make_context(options.context);
-    volume_ = read_volume(options.labels);
     for (const Label& label : find_labels(options.labels, volume_.image)) {
       pieces_.push_back({label});
     }
@@ -107,28 +123,21 @@ class LabelExtraction {
   int run() {
     interrupt_.note_first();
     for (Piece& piece : pieces_) {
-      if (!extract(piece)) return interrupted();
+      if (!extract(piece)) return interrupt_.tell();
     }
     if (!leave_out()) throw Failure{options_.labels + ": no label is large enough for a surface"};
-    if (!disjoint(context_.get(), meshes()) && !separate()) return interrupted();
-    if (again_ > 0 && open_.empty() && !disjoint(context_.get(), meshes())) {
-      throw Failure{"internal error: the labels overlap, but no two of them do"};
-    }
-    if (interrupt_.interrupted()) return interrupted();
+    if (!settle()) return interrupt_.tell();
+    if (interrupt_.interrupted()) return interrupt_.tell();
     interrupt_.only_note();  // what is written from here on is whole
     line_.clear();
-    for (Piece& piece : pieces_) write(piece);
+    write();
     print_total();
     line_.done();
-    return open_.empty() ? 0 : complain();
+    tell_precision(doubles_, options_.output);
+    return 0;
   }
 
  private:
-  static int interrupted() {
-    std::fputs("pellicle: interrupted\n", stderr);
-    return kExitInterrupted;
-  }
-
   static int on_progress(const plc_progress* progress, void* user) {
     auto& self = *static_cast<LabelExtraction*>(user);
     plc_progress p = *progress;
@@ -154,7 +163,7 @@ class LabelExtraction {
     ++done_;
     if (status == PLC_CANCELLED) return false;
     if (status != PLC_OK) {
-      const Failure failure = failure_of(context_.get(), status);
+      const Failure failure = failure_of(context_.get());
       if (failure.message.rfind("no surface", 0) == 0) return true;
       throw Failure{"label " + name_of(piece.label) + ": " + failure.message};
     }
@@ -183,17 +192,29 @@ class LabelExtraction {
   // Labels that hold no surface. False: no other is there.
   bool leave_out() {
     line_.clear();
-    bool any = false;
+    std::vector<std::string> names;
     for (const Piece& piece : pieces_) {
-      any = any || !piece.mesh.abc.empty();
-      if (!piece.mesh.abc.empty()) continue;
-      ++left_out_;
-      std::fprintf(stderr,
-                   "pellicle: label %" PRId32 ": %" PRId64
-                   " voxel%s, too small or too thin to hold a surface: left out\n",
-                   piece.label.value, piece.label.voxels, piece.label.voxels == 1 ? "" : "s");
+      if (piece.mesh.abc.empty()) names.push_back(name_of(piece.label));
     }
-    return any;
+    left_out_ = names.size();
+    if (left_out_ == 0) return true;
+    std::fprintf(stderr, "pellicle: %s: too small or too thin to hold a surface: left out\n",
+                 listed("label", "labels", names).c_str());
+    return left_out_ < pieces_.size();
+  }
+
+  // Until all surfaces are valid together, in floats or in doubles. False: cancelled.
+  bool settle() {
+    if (disjoint(context_.get(), meshes(), true)) return true;
+    doubles_ = true;
+    if (disjoint(context_.get(), meshes(), false)) return true;
+    if (!separate()) return false;
+    if (!open_.empty()) refuse();
+    if (again_ > 0) doubles_ = !disjoint(context_.get(), meshes(), true);
+    if (doubles_ && !disjoint(context_.get(), meshes(), false)) {
+      throw Failure{"internal error: the labels overlap, but no two of them do"};
+    }
+    return true;
   }
 
   std::vector<const TriangleMesh*> meshes() const {
@@ -214,6 +235,11 @@ class LabelExtraction {
       open_.erase(std::remove_if(open_.begin(), open_.end(), is_changed), open_.end());
       const auto found = find_overlaps(context_.get(), meshes(), changed);
       open_.insert(open_.end(), found.begin(), found.end());
+      // The engine's surfaces are valid: it is the coordinates that do not hold this one.
+      if (std::any_of(open_.begin(), open_.end(),
+                      [](const Overlap& o) { return o.first == o.second; })) {
+        return true;
+      }
       std::vector<char> cavity(pieces_.size(), 0);
       std::vector<char> wanted(pieces_.size(), 0);
       for (const Overlap& o : open_) {
@@ -237,17 +263,29 @@ class LabelExtraction {
     }
   }
 
-  void write(Piece& piece) {
-    if (piece.mesh.abc.empty()) return;
+  void write() {
+    AtomicFiles files;
+    for (Piece& piece : pieces_) {
+      if (piece.mesh.abc.empty()) continue;
+      write(piece, files);
+      if (files.size() >= kTogether) files.commit();
+    }
+    files.commit();
+  }
+
+  void write(Piece& piece, AtomicFiles& files) {
     const double begin = now();
     const std::string output = named(options_.output, name_of(piece.label));
-    write_mesh(output, piece.mesh);
+    piece.mesh.doubles = doubles_;
+    if (!doubles_) round_to_floats(piece.mesh.xyz);
+    write_mesh(output, piece.mesh, files);
     if (!options_.report.empty()) {
       auto& seconds = piece.report["seconds"];
       const double taken = now() - begin;
       seconds["write"] = taken;
       seconds["total"] = seconds["total"].get<double>() + taken;
-      write_report(named(options_.report, name_of(piece.label)), piece.report);
+      piece.report["coordinates"] = precision_text(doubles_);
+      write_report(named(options_.report, name_of(piece.label)), piece.report, files);
     }
     const plc_measures& m = piece.measures;
     if (options_.progress != Progress::kNone) {
@@ -267,20 +305,15 @@ class LabelExtraction {
     std::fflush(stdout);
   }
 
-  int complain() const {
+  // Surfaces that overlap whatever is tried are not written, nor are the others.
+  [[noreturn]] void refuse() const {
+    std::vector<std::string> names;
     for (const Overlap& o : open_) {
-      const std::string first = name_of(pieces_[o.first].label);
-      if (o.first == o.second) {
-        std::fprintf(stderr,
-                     "pellicle: label %s: written, but not valid as `pellicle check` tells\n",
-                     first.c_str());
-        continue;
-      }
-      std::fprintf(stderr, "pellicle: labels %s and %s: written, but they overlap (one %s)\n",
-                   first.c_str(), name_of(pieces_[o.second].label).c_str(),
-                   o.nested ? "lies inside the other" : "meets the other");
+      if (o.first == o.second) fail_precision(options_.space, options_.output);
+      names.push_back(name_of(pieces_[o.first].label) + " and " + name_of(pieces_[o.second].label));
     }
-    return kExitOverlap;
+    throw Failure{options_.labels + ": " + listed("labels", "pairs of labels", names) +
+                  ": their surfaces overlap, however far apart they are drawn: nothing is written"};
   }
 
   const ExtractOptions& options_;
@@ -292,6 +325,7 @@ class LabelExtraction {
   LoadedVolume volume_{};
   std::vector<Piece> pieces_;
   std::vector<Overlap> open_;
+  bool doubles_ = false;
   size_t done_ = 0;  // calls of the engine
   size_t left_out_ = 0;
   size_t again_ = 0;

@@ -13,8 +13,8 @@ void add_label_options(CLI::App& command, ExtractOptions& options);
 
 // One mesh per label, OUTPUT-LABEL.SUFFIX, none of which meets another or lies inside it: a label
 // that another one encloses lies in a cavity of that one. Labels too small to hold a surface are
-// told on stderr and left out. Nothing is written before all of them are there. Returns the exit
-// code: 1 where two of them overlap whatever was tried, which is told. Throws Failure.
+// told on stderr and left out. Nothing is written before all of them are there, and valid together.
+// Returns the exit code. Throws Failure, also where two of them overlap whatever was tried.
 int run_labels(const ExtractOptions& options, InterruptGuard& interrupt);
 
 }  // namespace plc::tools

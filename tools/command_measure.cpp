@@ -11,6 +11,7 @@
 #include "tools/engine_handles.h"
 #include "tools/measure_report.h"
 #include "tools/mesh_io.h"
+#include "tools/mesh_precision.h"
 #include "tools/option_values.h"
 #include "tools/report.h"
 
@@ -29,7 +30,7 @@ int64_t faces_of(const TriangleMesh& mesh) {
 }
 
 void require(plc_context* context, plc_status status) {
-  if (status != PLC_OK) throw failure_of(context, status);
+  if (status != PLC_OK) throw failure_of(context);
 }
 
 // Values that are not finite become NaN: viewers leave these out.
@@ -206,7 +207,11 @@ int run_measure(const MeasureOptions& options) {
   const ContextHandle context = make_context(context_options);
   TriangleMesh mesh = read_mesh(options.mesh);
   const Measured measured = measure(context.get(), mesh, options);
-  if (!options.output.empty()) write_mesh(options.output, mesh);
+  if (!options.output.empty()) {
+    settle_precision(context.get(), mesh);
+    write_mesh(options.output, mesh);
+    tell_precision(mesh.doubles, options.output);
+  }
   if (!options.json.empty()) write_report(options.json, measured_json(measured));
   print_measured(measured);
   return 0;

@@ -1,6 +1,12 @@
 #include "tools/command_render.h"
 
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "tools/apart.h"
 #include "tools/atomic_file.h"
+#include "tools/checked_sizes.h"
 #include "tools/option_values.h"
 #include "tools/render_png.h"
 #include "tools/volume_io.h"
@@ -27,6 +33,23 @@ Picture montage(const Renderer& renderer, int size) {
     ++i;
   }
   return picture;
+}
+
+Picture drawn(const TriangleMesh& mesh, const RenderOptions& options) {
+  const Renderer renderer(options.mesh, mesh);
+  if (options.montage) return montage(renderer, options.size);
+  Picture picture(options.size, options.size);
+  renderer.draw(options.view, picture, 0, 0, options.size);
+  return picture;
+}
+
+// Many times what they take. Memory is not limited: each of the ray tracer's threads reserves some.
+ApartLimits limits_for(const TriangleMesh& mesh, const RenderOptions& options) {
+  constexpr double kSecondsPerPixel = 1e-4;
+  constexpr double kSecondsPerCorner = 1e-5;
+  const double pixels = static_cast<double>(options.size) * options.size;
+  return {10 + kSecondsPerPixel * pixels + kSecondsPerCorner * static_cast<double>(mesh.abc.size()),
+          kTooLarge};
 }
 
 void check_png_path(const std::string& path) {
@@ -80,13 +103,19 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
 
 int run_render(const RenderOptions& options) {
   check_png_path(options.output);
-  const Renderer renderer(read_mesh(options.mesh));
-  if (options.montage) {
-    write_png(options.output, montage(renderer, options.size));
-    return 0;
+  const TriangleMesh mesh = read_mesh(options.mesh);
+  Parcel parcel = apart(options.mesh, "cannot be drawn", limits_for(mesh, options), [&] {
+    Picture picture = drawn(mesh, options);
+    const int size[2] = {picture.width, picture.height};
+    return Parcel{std::string(reinterpret_cast<const char*>(size), sizeof size),
+                  std::move(picture.rgb)};
+  });
+  int size[2] = {0, 0};
+  std::memcpy(size, parcel.text.data(), std::min(parcel.text.size(), sizeof size));
+  const Picture picture(size[0], size[1], std::move(parcel.bytes));
+  if (picture.rgb.empty() || picture.rgb.size() != pixel_bytes(size[0], size[1])) {
+    throw Failure{options.mesh + ": cannot be drawn"};
   }
-  Picture picture(options.size, options.size);
-  renderer.draw(options.view, picture, 0, 0, options.size);
   write_png(options.output, picture);
   return 0;
 }

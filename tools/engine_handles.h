@@ -16,15 +16,13 @@ struct EngineDeleter {
 using ContextHandle = std::unique_ptr<plc_context, EngineDeleter>;
 using SurfaceHandle = std::unique_ptr<plc_surface, EngineDeleter>;
 
-inline Failure failure_of(const plc_context* context, plc_status status) {
-  const std::string message = plc_context_message(context);
-  if (status == PLC_INTERNAL) return {"internal error: " + message};
-  return {message};
+inline Failure failure_of(const plc_context* context) {
+  return {plc_context_message(context)};
 }
 
 // Throws Failure where a call has failed.
 inline void demand(const plc_context* context, plc_status status) {
-  if (status != PLC_OK) throw failure_of(context, status);
+  if (status != PLC_OK) throw failure_of(context);
 }
 
 inline ContextHandle make_context(const plc_context_options& options) {

@@ -5,7 +5,10 @@ namespace plc::tools {
 ExtractInputs::ExtractInputs(const ExtractOptions& options)
     : space_(options.space), seeds_(options.seeds) {
   if (!options.attach.empty()) attach_ = read_attach_file(options.attach);
-  if (options.parameters.init == PLC_INIT_MASK) mask_ = read_volume(options.init_file);
+  if (options.parameters.init == PLC_INIT_MASK) {
+    mask_ = read_volume_apart(options.init_file, options.nifti_frame);
+    print_warnings(mask_);
+  }
   if (options.parameters.init == PLC_INIT_MESH) mesh_ = read_mesh(options.init_file);
 }
 

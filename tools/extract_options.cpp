@@ -7,6 +7,8 @@ namespace plc::tools {
 
 const Choices<plc_space> kSpaces = {
     {"lps", PLC_SPACE_LPS}, {"ras", PLC_SPACE_RAS}, {"voxel", PLC_SPACE_VOXEL}};
+const Choices<NiftiFrame> kNiftiFrames = {
+    {"auto", NiftiFrame::kAuto}, {"sform", NiftiFrame::kSform}, {"qform", NiftiFrame::kQform}};
 const Choices<plc_bound> kBounds = {{"clamp", PLC_BOUND_CLAMP}, {"scale", PLC_BOUND_SCALE}};
 const Choices<plc_anisotropy> kAnisotropies = {{"physical", PLC_ANISOTROPY_PHYSICAL},
                                                {"voxel", PLC_ANISOTROPY_VOXEL},
@@ -95,13 +97,12 @@ void read_init(const std::string& text, ExtractOptions& o) {
   }
 }
 
-// On the command line from coarse to fine; the engine wants I_0 first.
 void read_level_isos(const std::string& text, plc_parameters& p) {
   const auto values = to_numbers("--level-iso", text, 0);
   if (values.size() > PLC_MAX_LEVELS) {
     refuse_value("--level-iso", text, "at most " + std::to_string(PLC_MAX_LEVELS) + " numbers");
   }
-  std::reverse_copy(values.begin(), values.end(), p.level_iso);
+  std::copy(values.begin(), values.end(), p.level_iso);
   p.level_iso_count = static_cast<int>(values.size());
 }
 
@@ -124,17 +125,20 @@ class Declarations {
     choice("--space", kSpaces, options_.space,
            "Coordinates of the mesh: patient space in mm (lps: x to the left, y to the back, z to "
            "the head; ras: x to the right, y to the front) or voxel indices");
+    choice("--nifti-frame", kNiftiFrames, options_.nifti_frame,
+           "Where NIfTI files lie: by their sform where it has a code, else by their qform (auto), "
+           "or by the one that is named");
     file("--report", options_.report, "JSON report to write");
     file("--trace", options_.trace,
-         "CSV to write: iteration, level, vertices, energy, speed and seconds of every iteration "
-         "(figure 17)");
+         "CSV to write: iteration, level, vertices, energy, speed, seconds and the part told to be "
+         "done of every iteration (figure 17)");
     flag(
         "--each-level", [&o = options_] { o.each_level = true; },
         "Write the surface at the end of each level too, OUTPUT-levelH.SUFFIX (figures 14, 16, "
         "20)");
     CLI::Option* quiet = flag(
         "--quiet", [&o = options_] { o.progress = Progress::kNone; },
-        "No progress and no summary; errors only");
+        "No progress and no summary; warnings and errors only");
     flag(
         "--slicer-progress", [&o = options_] { o.progress = Progress::kSlicer; },
         "Progress on stdout as command-line modules tell it to 3D Slicer")
@@ -167,7 +171,8 @@ class Declarations {
          });
     number("--pad", p_.pad_value,
            "Value that surrounds the image, so that objects cut by its border come out closed, in "
-           "the image's units; by default the outside end of the window");
+           "the image's units, not on the object's side of --iso; by default the outside end of "
+           "the window");
   }
 
   void feature() {
@@ -195,12 +200,14 @@ class Declarations {
            "mm (metric)");
     text("--init", "KIND", init_text(options_),
          "What the surface starts from: bubble, one around the object; bubbles=NX,NY,NZ, a grid of "
-         "them over the image, each count 1 .. 256; seeds=X,Y,Z,R;..., spheres (in --space, R in "
-         "mm); iso, the iso-surface of the coarsest image; mask=FILE, the surface of the voxels "
+         "them over the image, each count 1 .. 256; seeds=X,Y,Z,R;..., spheres (centres in "
+         "--space and in the image, R in mm); iso, the iso-surface of the coarsest image; "
+         "mask=FILE, the surface of the voxels "
          "of a volume that are not 0; mesh=FILE, a closed oriented mesh (in --space)",
          [&o = options_](const std::string& s) { read_init(s, o); });
     file("--attach", options_.attach,
-         "File of places (in --space, mm) that draw the surface near them, \"attach X Y Z RADIUS "
+         "File of places (in --space, radii in mm, in the image) that draw the surface near them, "
+         "\"attach X Y Z RADIUS "
          "[STRENGTH]\", or in which it does not move, \"pin X Y Z RADIUS\"");
   }
 

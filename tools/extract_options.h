@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/pellicle.h"
+#include "tools/nifti_frame.h"
 #include "tools/option_values.h"
 #include "tools/progress_line.h"
 
@@ -31,6 +32,7 @@ struct ExtractOptions {
   plc_parameters parameters;
   plc_context_options context;
   plc_space space = PLC_SPACE_LPS;
+  NiftiFrame nifti_frame = NiftiFrame::kAuto;
   bool each_level = false;
   Progress progress = Progress::kText;
 
@@ -45,6 +47,7 @@ void add_extract_options(CLI::App& command, ExtractOptions& options);
 void read_structures(ExtractOptions& options);
 
 extern const Choices<plc_space> kSpaces;
+extern const Choices<NiftiFrame> kNiftiFrames;
 extern const Choices<plc_bound> kBounds;
 extern const Choices<plc_anisotropy> kAnisotropies;
 extern const Choices<plc_force> kForces;

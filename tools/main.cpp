@@ -1,5 +1,5 @@
 // The `pellicle` command. Exit codes: 0 done, 1 a mesh or result is not valid, 2 bad usage or
-// input, 130 interrupted. Every error is one line on stderr.
+// input, 130 interrupted or stdout closed early. Every error is one line on stderr.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
@@ -21,6 +21,7 @@
 #include "tools/command_measure.h"
 #include "tools/command_phantom.h"
 #include "tools/command_render.h"
+#include "tools/interrupt.h"
 #include "tools/option_values.h"
 #include "tools/slicer_description.h"
 #include "tools/volume_io.h"
@@ -42,10 +43,12 @@ int fail(std::string message) {
 }
 
 // The exit code when all that was written to stdout has to be there, too.
-int finished(int code) {
+int finished(int code, InterruptGuard& interrupt) {
+  interrupt.end_at_once();
   errno = 0;
   std::cout.flush();
   const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();
+  if (interrupt.pipe_closed()) return interrupt.tell();
   if (written) return code;
   // Where an earlier flush failed, its cause is not known any more.
   const std::string cause = errno != 0 ? ": " + std::generic_category().message(errno) : "";
@@ -54,7 +57,7 @@ int finished(int code) {
 
 class Command {
  public:
-  Command() {
+  explicit Command(InterruptGuard& interrupt) : interrupt_(interrupt) {
     app_.set_version_flag("--version", plc_version_string());
     app_.require_subcommand(1);
     app_.get_formatter()->column_width(kHelpColumn);
@@ -92,7 +95,7 @@ class Command {
       }
       return fail(e.what());
     }
-    if (extract_->parsed()) return run_extract(extract_options_);
+    if (extract_->parsed()) return run_extract(extract_options_, interrupt_);
     if (check_->parsed()) return run_check(check_options_);
     if (measure_->parsed()) return run_measure(measure_options_);
     if (phantom_->parsed()) return run_phantom(phantom_arguments_);
@@ -104,6 +107,7 @@ class Command {
     return app_.add_subcommand(name, meaning);
   }
 
+  InterruptGuard& interrupt_;
   CLI::App app_{"Closed, oriented, intersection-free triangulated surfaces from 3D images",
                 "pellicle"};
   CLI::App* extract_ = nullptr;
@@ -121,9 +125,10 @@ class Command {
 }  // namespace
 
 int main(int argc, char** argv) {
+  InterruptGuard interrupt;
   std::signal(SIGXFSZ, SIG_IGN);  // a file too large for its limit fails as a full disk does
   try {
-    return finished(Command().run(argc, argv));
+    return finished(Command(interrupt).run(argc, argv), interrupt);
   } catch (const Failure& failure) {
     return fail(failure.message);
   } catch (const std::bad_alloc&) {

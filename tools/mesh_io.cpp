@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
+#include "tools/checked_sizes.h"
 #include "tools/mesh_io_formats.h"
 #include "tools/volume_io_memory.h"
 
@@ -49,7 +51,7 @@ std::string contents(const std::string& path) {
   const uintmax_t size = std::filesystem::file_size(path, error);
   if (error) throw Failure{path + ": cannot be read: " + error.message()};
   // The text and the mesh made of it, which no format stores in less than half its size.
-  require_memory(path, size * 3);
+  require_memory(path, times(size, 3));
   std::ifstream file(path, std::ios::binary);
   std::string data(size, '\0');
   if (!file.read(data.data(), static_cast<std::streamsize>(size))) {
@@ -106,6 +108,8 @@ TriangleMesh read_mesh(const std::string& path) {
     return format.read(path, data);
   } catch (const std::bad_alloc&) {
     throw Failure{path + ": not enough memory to read it"};
+  } catch (const std::length_error&) {  // of a string or vector longer than any memory
+    throw Failure{path + ": not enough memory to read it"};
   }
 }
 
@@ -115,10 +119,14 @@ void check_mesh_path(const std::string& path, bool with_scalars) {
 }
 
 void write_mesh(const std::string& path, const TriangleMesh& mesh) {
+  AtomicFiles files;
+  write_mesh(path, mesh, files);
+  files.commit();
+}
+
+void write_mesh(const std::string& path, const TriangleMesh& mesh, AtomicFiles& files) {
   const Format& format = format_for(path, !mesh.scalars.empty());
-  AtomicFile file(path);
-  format.write(file, mesh);
-  file.commit();
+  format.write(files.add(path), mesh);
 }
 
 }  // namespace plc::tools

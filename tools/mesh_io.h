@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/atomic_file.h"
 #include "tools/volume_io.h"
 
 namespace plc::tools {
@@ -19,6 +20,7 @@ struct TriangleMesh {
   std::vector<uint32_t> abc;       // three per face
   std::vector<float> normals;      // three per vertex, or none
   std::vector<Scalars> scalars{};  // written, not read
+  bool doubles = false;            // how the coordinates are written, else as floats
 };
 
 // By suffix. Polygons are fan-triangulated; the corners of an STL are welded where they coincide
@@ -29,9 +31,12 @@ TriangleMesh read_mesh(const std::string& path);
 // a file can be made at `path`: before a long run.
 void check_mesh_path(const std::string& path, bool with_scalars = false);
 
-// By suffix: .stl and .ply binary (float), .obj, .off, .vtp. Scalars are float properties of a .ply
-// and point data of a .vtp; a mesh that has some is refused in other formats. Written beside the
-// target and renamed: nothing half-written is left behind. Throws Failure.
+// By suffix: .stl and .ply binary, .obj, .off, .vtp. Coordinates in doubles are read back as they
+// were; an .stl is text then. Scalars are float properties of a .ply and point data of a .vtp; a
+// mesh that has some is refused in other formats. Written beside the target and renamed: nothing
+// half-written is left behind. Throws Failure.
 void write_mesh(const std::string& path, const TriangleMesh& mesh);
+// One of several files, which are there once those are committed.
+void write_mesh(const std::string& path, const TriangleMesh& mesh, AtomicFiles& files);
 
 }  // namespace plc::tools

@@ -63,7 +63,7 @@ void write_obj(AtomicFile& file, const TriangleMesh& mesh) {
   std::string out = "# Pellicle\n";
   for (size_t i = 0; i < mesh.xyz.size(); ++i) {
     if (i % 3 == 0) out += "v ";
-    put_real(out, mesh.xyz[i]);
+    put_real(out, mesh.xyz[i], mesh.doubles);
     out += i % 3 == 2 ? '\n' : ' ';
     drain(file, out);
   }

@@ -56,7 +56,7 @@ void write_off(AtomicFile& file, const TriangleMesh& mesh) {
   put_integer(out, mesh.abc.size() / 3);
   out += " 0\n";
   for (size_t i = 0; i < mesh.xyz.size(); ++i) {
-    put_real(out, mesh.xyz[i]);
+    put_real(out, mesh.xyz[i], mesh.doubles);
     out += i % 3 == 2 ? '\n' : ' ';
     drain(file, out);
   }

@@ -275,14 +275,18 @@ void write_ply(AtomicFile& file, const TriangleMesh& mesh) {
   const bool with_normals = mesh.normals.size() == mesh.xyz.size();
   std::string out = "ply\nformat binary_little_endian 1.0\ncomment Pellicle\nelement vertex ";
   put_integer(out, mesh.xyz.size() / 3);
-  out += "\nproperty float x\nproperty float y\nproperty float z\n";
+  out += '\n';
+  for (const char* axis : {"x\n", "y\n", "z\n"}) {
+    out += mesh.doubles ? "property double " : "property float ";
+    out += axis;
+  }
   if (with_normals) out += "property float nx\nproperty float ny\nproperty float nz\n";
   for (const Scalars& scalars : mesh.scalars) out += "property float " + scalars.name + "\n";
   out += "element face ";
   put_integer(out, mesh.abc.size() / 3);
   out += "\nproperty list uchar uint vertex_indices\nend_header\n";
   for (size_t i = 0; i < mesh.xyz.size(); i += 3) {
-    for (size_t k = 0; k < 3; ++k) put_value(out, static_cast<float>(mesh.xyz[i + k]));
+    for (size_t k = 0; k < 3; ++k) put_coordinate(out, mesh.xyz[i + k], mesh.doubles);
     for (size_t k = 0; with_normals && k < 3; ++k) put_value(out, mesh.normals[i + k]);
     for (const Scalars& scalars : mesh.scalars) put_value(out, scalars.values[i / 3]);
     drain(file, out);

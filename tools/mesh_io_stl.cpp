@@ -102,6 +102,75 @@ TriangleMesh read_ascii(const std::string& path, std::string_view data) {
   return mesh.finish();
 }
 
+struct Triangle {
+  const double* corner[3];
+  double normal[3];  // of length 1, or 0
+};
+
+Triangle triangle_of(const TriangleMesh& mesh, size_t face) {
+  Triangle t{};
+  for (size_t k = 0; k < 3; ++k) {
+    t.corner[k] = mesh.xyz.data() + 3 * size_t{mesh.abc[3 * face + k]};
+  }
+  double u[3];
+  double v[3];
+  for (int k = 0; k < 3; ++k) {
+    u[k] = t.corner[1][k] - t.corner[0][k];
+    v[k] = t.corner[2][k] - t.corner[0][k];
+  }
+  const double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                       u[0] * v[1] - u[1] * v[0]};
+  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  for (int k = 0; k < 3; ++k) t.normal[k] = length > 0 ? n[k] / length : 0;
+  return t;
+}
+
+void write_binary(AtomicFile& file, const TriangleMesh& mesh) {
+  const size_t count = mesh.abc.size() / 3;
+  if (count > std::numeric_limits<uint32_t>::max()) {
+    throw Failure{"an STL file cannot hold " + std::to_string(count) + " triangles"};
+  }
+  std::string out = "Binary STL by Pellicle, mm";
+  out.resize(kHeaderBytes, ' ');
+  put_value(out, static_cast<uint32_t>(count));
+  for (size_t i = 0; i < count; ++i) {
+    const Triangle t = triangle_of(mesh, i);
+    for (const double component : t.normal) put_value(out, static_cast<float>(component));
+    for (const double* corner : t.corner) {
+      for (int k = 0; k < 3; ++k) put_value(out, static_cast<float>(corner[k]));
+    }
+    put_value(out, uint16_t{0});
+    drain(file, out);
+  }
+  drain(file, out, true);
+}
+
+void put_vector(std::string& out, const double* v, bool exact) {
+  for (int k = 0; k < 3; ++k) {
+    out += ' ';
+    put_real(out, v[k], exact);
+  }
+  out += '\n';
+}
+
+void write_ascii(AtomicFile& file, const TriangleMesh& mesh) {
+  std::string out = "solid Pellicle\n";
+  for (size_t i = 0; i < mesh.abc.size() / 3; ++i) {
+    const Triangle t = triangle_of(mesh, i);
+    out += "facet normal";
+    put_vector(out, t.normal, false);
+    out += "outer loop\n";
+    for (const double* corner : t.corner) {
+      out += "vertex";
+      put_vector(out, corner, true);
+    }
+    out += "endloop\nendfacet\n";
+    drain(file, out);
+  }
+  out += "endsolid Pellicle\n";
+  drain(file, out, true);
+}
+
 }  // namespace
 
 TriangleMesh read_stl(const std::string& path, std::string_view data) {
@@ -115,36 +184,13 @@ TriangleMesh read_stl(const std::string& path, std::string_view data) {
   return read_binary(path, data);
 }
 
+// The binary kind has floats only.
 void write_stl(AtomicFile& file, const TriangleMesh& mesh) {
-  const size_t count = mesh.abc.size() / 3;
-  if (count > std::numeric_limits<uint32_t>::max()) {
-    throw Failure{"an STL file cannot hold " + std::to_string(count) + " triangles"};
+  if (mesh.doubles) {
+    write_ascii(file, mesh);
+  } else {
+    write_binary(file, mesh);
   }
-  std::string out = "Binary STL by Pellicle, mm";
-  out.resize(kHeaderBytes, ' ');
-  put_value(out, static_cast<uint32_t>(count));
-  for (size_t i = 0; i < count; ++i) {
-    const double* p[3];
-    for (size_t k = 0; k < 3; ++k) p[k] = mesh.xyz.data() + 3 * size_t{mesh.abc[3 * i + k]};
-    double u[3];
-    double v[3];
-    for (int k = 0; k < 3; ++k) {
-      u[k] = p[1][k] - p[0][k];
-      v[k] = p[2][k] - p[0][k];
-    }
-    const double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                         u[0] * v[1] - u[1] * v[0]};
-    const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    for (const double component : n) {
-      put_value(out, length > 0 ? static_cast<float>(component / length) : 0.0F);
-    }
-    for (const double* corner : p) {
-      for (int k = 0; k < 3; ++k) put_value(out, static_cast<float>(corner[k]));
-    }
-    put_value(out, uint16_t{0});
-    drain(file, out);
-  }
-  drain(file, out, true);
 }
 
 }  // namespace plc::tools

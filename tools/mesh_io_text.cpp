@@ -76,9 +76,11 @@ void TextReader::fail(const std::string& message) const {
   throw Failure{line};
 }
 
-void put_real(std::string& out, double value) {
+void put_real(std::string& out, double value, bool exact) {
   char text[32];
-  const auto result = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 9);
+  char* const end = text + sizeof text;
+  const auto result = exact ? std::to_chars(text, end, value)
+                            : std::to_chars(text, end, value, std::chars_format::general, 9);
   out.append(text, result.ptr);
 }
 

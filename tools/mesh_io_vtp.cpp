@@ -190,8 +190,10 @@ TriangleMesh read_vtp(const std::string& path, std::string_view data) {
 void write_vtp(AtomicFile& file, const TriangleMesh& mesh) {
   const bool with_normals = mesh.normals.size() == mesh.xyz.size();
   const size_t faces = mesh.abc.size() / 3;
-  const size_t float_bytes = sizeof(uint64_t) + mesh.xyz.size() * sizeof(float);
-  const size_t scalars_at = float_bytes * (with_normals ? 2 : 1);
+  const size_t points_bytes =
+      sizeof(uint64_t) + mesh.xyz.size() * (mesh.doubles ? sizeof(double) : sizeof(float));
+  const size_t normals_bytes = sizeof(uint64_t) + mesh.xyz.size() * sizeof(float);
+  const size_t scalars_at = points_bytes + (with_normals ? normals_bytes : 0);
   const size_t scalar_bytes = sizeof(uint64_t) + mesh.xyz.size() / 3 * sizeof(float);
   const size_t cells_at = scalars_at + scalar_bytes * mesh.scalars.size();
   std::string out =
@@ -203,19 +205,24 @@ void write_vtp(AtomicFile& file, const TriangleMesh& mesh) {
   out += "\">\n";
   if (with_normals || !mesh.scalars.empty()) {
     out += with_normals ? "<PointData Normals=\"Normals\">\n" : "<PointData>\n";
-    if (with_normals) out += array_tag("Float32", "Normals", 3, float_bytes);
+    if (with_normals) out += array_tag("Float32", "Normals", 3, points_bytes);
     for (size_t i = 0; i < mesh.scalars.size(); ++i) {
       out += array_tag("Float32", mesh.scalars[i].name, 1, scalars_at + i * scalar_bytes);
     }
     out += "</PointData>\n";
   }
-  out += "<Points>\n" + array_tag("Float32", "Points", 3, 0) + "</Points>\n<Polys>\n";
+  out += "<Points>\n" + array_tag(mesh.doubles ? "Float64" : "Float32", "Points", 3, 0) +
+         "</Points>\n<Polys>\n";
   out += array_tag("Int64", "connectivity", 1, cells_at);
   out += array_tag("Int64", "offsets", 1,
                    cells_at + sizeof(uint64_t) + mesh.abc.size() * sizeof(int64_t));
   out += "</Polys>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
   drain(file, out, true);
-  write_array<float>(file, mesh.xyz);
+  if (mesh.doubles) {
+    write_array<double>(file, mesh.xyz);
+  } else {
+    write_array<float>(file, mesh.xyz);
+  }
   if (with_normals) write_array<float>(file, mesh.normals);
   for (const Scalars& scalars : mesh.scalars) write_array<float>(file, scalars.values);
   write_array<int64_t>(file, mesh.abc);

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 
+#include "tools/checked_sizes.h"
 #include "tools/mesh_io_text.h"
 #include "tools/printable.h"
 #include "tools/volume_io.h"
@@ -100,11 +100,18 @@ class ArrayReader {
     left_ -= size;
   }
 
+  void check_ratio(uint64_t blocks, uint64_t size, uint64_t last_size, uint64_t packed) const {
+    constexpr uint64_t kMaxRatio = 1100;  // zlib's is 1032
+    if (last_size > size || times(size, blocks) > times(packed, kMaxRatio)) {
+      fail("has lengths that contradict each other");
+    }
+  }
+
   std::string plain() {
     const uint64_t length = word(first(word_size()), 0);
     check_length(length);
     take(length);
-    return first(word_size() + length).substr(word_size());
+    return first(plus(word_size(), length)).substr(word_size());
   }
 
   // Header: blocks, bytes of a block, bytes of the last one (0: a whole one), then the compressed
@@ -113,25 +120,23 @@ class ArrayReader {
     const uint64_t blocks = word(first(word_size()), 0);
     if (blocks == 0) return {};
     check_length(blocks);
-    const size_t header_size = (3 + blocks) * word_size();
+    const std::string sizes = first(3 * word_size());
+    const uint64_t block_size = word(sizes, 1);
+    const uint64_t last_size = word(sizes, 2) != 0 ? word(sizes, 2) : block_size;
+    check_ratio(blocks, block_size, last_size, source_.size());
+    const uint64_t header_size = times(plus(blocks, 3), word_size());
     const std::string header = first(header_size);
-    const uint64_t block_size = word(header, 1);
-    const uint64_t last_size = word(header, 2) != 0 ? word(header, 2) : block_size;
     uint64_t packed = 0;
     for (uint64_t i = 0; i < blocks; ++i) {
       check_length(word(header, 3 + i));
       packed += word(header, 3 + i);
       check_length(packed);
     }
-    constexpr uint64_t kMaxRatio = 1100;  // zlib's is 1032
-    if (block_size > kMaxRatio * packed || last_size > block_size ||
-        block_size * blocks > kMaxRatio * packed) {
-      fail("has lengths that contradict each other");
-    }
-    const std::string data = first(header_size + packed);
-    take(header_size + packed);
+    check_ratio(blocks, block_size, last_size, packed);
+    const std::string data = first(plus(header_size, packed));
+    take(plus(header_size, packed));
     const uint64_t total = (blocks - 1) * block_size + last_size;
-    require_memory(path_, total + total / value_size * sizeof(double));
+    require_memory(path_, plus(total, times(total / value_size, sizeof(double))));
     std::string out(total, '\0');
     const char* in = data.data() + header_size;
     for (uint64_t i = 0; i < blocks; ++i) {

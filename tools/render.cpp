@@ -5,10 +5,11 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <thread>
+#include <utility>
 
 #include "tools/render_camera.h"
+#include "tools/render_mesh.h"
 #include "tools/render_sampling.h"
 #include "tools/volume_io.h"
 
@@ -43,10 +44,10 @@ Vec3f times(Vec3f a, Vec3f b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
 
-uint8_t srgb(float linear) {
+std::byte srgb(float linear) {
   const float x = std::clamp(linear, 0.0F, 1.0F);
   const float y = x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1 / 2.4F) - 0.055F;
-  return static_cast<uint8_t>(std::lround(255 * y));
+  return static_cast<std::byte>(std::lround(255 * y));
 }
 
 // Of each vertex, the faces' normals weighted by area and so by their cross product.
@@ -64,8 +65,11 @@ std::vector<Vec3f> smooth_normals(const std::vector<Vec3f>& points,
 
 }  // namespace
 
-Picture::Picture(int w, int h)
-    : width(w), height(h), rgb(size_t{3} * static_cast<size_t>(w) * static_cast<size_t>(h)) {}
+size_t pixel_bytes(int width, int height) {
+  return size_t{3} * static_cast<size_t>(width) * static_cast<size_t>(height);
+}
+
+Picture::Picture(int w, int h) : width(w), height(h), rgb(pixel_bytes(w, h)) {}
 
 struct Renderer::Scene {
   std::vector<Vec3f> points;
@@ -75,7 +79,7 @@ struct Renderer::Scene {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
 
-  explicit Scene(const TriangleMesh& mesh);
+  explicit Scene(DrawnMesh mesh);
   ~Scene();
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
@@ -90,18 +94,10 @@ struct Renderer::Scene {
   float ambient(Vec3f at, Vec3f normal, uint32_t pixel, uint32_t sample) const;
 };
 
-Renderer::Scene::Scene(const TriangleMesh& mesh) : abc(mesh.abc) {
-  if (abc.empty()) throw Failure{"the mesh has no face: there is nothing to draw"};
-  points.reserve(mesh.xyz.size() / 3);
+Renderer::Scene::Scene(DrawnMesh mesh) : points(std::move(mesh.points)), abc(std::move(mesh.abc)) {
   Vec3f low = {INFINITY, INFINITY, INFINITY};
   Vec3f high = {-INFINITY, -INFINITY, -INFINITY};
-  for (size_t i = 0; i + 2 < mesh.xyz.size(); i += 3) {
-    const Vec3f p = {static_cast<float>(mesh.xyz[i]), static_cast<float>(mesh.xyz[i + 1]),
-                     static_cast<float>(mesh.xyz[i + 2])};
-    if (!std::isfinite(dot(p, p))) {
-      throw Failure{"point " + std::to_string(i / 3) + " of the mesh is not finite"};
-    }
-    points.push_back(p);
+  for (const Vec3f p : points) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
@@ -130,6 +126,7 @@ void Renderer::Scene::build() {
   rtcAttachGeometry(scene, geometry);
   rtcReleaseGeometry(geometry);
   rtcCommitScene(scene);
+  if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw Failure{"the ray tracer has failed"};
 }
 
 Renderer::Scene::~Scene() {
@@ -223,16 +220,17 @@ void Renderer::Scene::draw_row(const Camera& camera, Picture& picture, int left,
       sum = sum + shade(camera, d, pixel, static_cast<uint32_t>(s), background);
     }
     const Vec3f mean = sum * (1.0F / (kGrid * kGrid));
-    uint8_t* out =
-        &picture.rgb[3 * (static_cast<size_t>(top + row) * static_cast<size_t>(picture.width) +
-                          static_cast<size_t>(left + column))];
+    std::byte* out = picture.rgb.data() +
+                     3 * (static_cast<size_t>(top + row) * static_cast<size_t>(picture.width) +
+                          static_cast<size_t>(left + column));
     out[0] = srgb(mean.x);
     out[1] = srgb(mean.y);
     out[2] = srgb(mean.z);
   }
 }
 
-Renderer::Renderer(const TriangleMesh& mesh) : scene_(new Scene(mesh)) {}
+Renderer::Renderer(const std::string& path, const TriangleMesh& mesh)
+    : scene_(new Scene(drawn_mesh(path, mesh))) {}
 Renderer::~Renderer() {
   delete scene_;
 }

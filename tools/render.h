@@ -1,9 +1,11 @@
 // Shaded pictures of triangle meshes, by ray tracing; no display is needed.
 #pragma once
-#include <cstdint>
-#include <vector>
+#include <cstddef>
+#include <string>
+#include <utility>
 
 #include "tools/mesh_io.h"
+#include "tools/shared_bytes.h"
 
 namespace plc::tools {
 
@@ -11,10 +13,14 @@ namespace plc::tools {
 struct Picture {
   int width = 0;
   int height = 0;
-  std::vector<uint8_t> rgb;
+  SharedBytes rgb;
 
   Picture(int w, int h);
+  Picture(int w, int h, SharedBytes pixels) : width(w), height(h), rgb(std::move(pixels)) {}
 };
+
+// Of a picture.
+size_t pixel_bytes(int width, int height);
 
 // Degrees. Azimuth 0 looks from -y (the front of a patient in LPS), 90 from +x (the left);
 // elevation 90 looks from +z (the top).
@@ -26,8 +32,9 @@ struct View {
 // A mesh made ready for pictures. The mesh is copied.
 class Renderer {
  public:
-  // Throws Failure where the mesh has no face or a coordinate that is not finite in float.
-  explicit Renderer(const TriangleMesh& mesh);
+  // Throws Failure, which names `path`, where there is nothing to draw or a coordinate is not
+  // finite.
+  Renderer(const std::string& path, const TriangleMesh& mesh);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;

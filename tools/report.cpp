@@ -1,12 +1,12 @@
 #include "tools/report.h"
 
 #include <sys/resource.h>
+#include <algorithm>
 #include <array>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
 
-#include "tools/atomic_file.h"
 #include "tools/engine_handles.h"
 #include "tools/volume_io.h"
 
@@ -18,8 +18,7 @@ using Json = nlohmann::ordered_json;
 
 Json parameters_json(const plc_parameters& p, ExtractOptions options) {
   options.parameters = p;
-  Json isos = Json::array();  // coarse to fine, as --level-iso takes them
-  for (int h = p.level_iso_count; h-- > 0;) isos.push_back(p.level_iso[h]);
+  const std::vector<double> isos(p.level_iso, p.level_iso + p.level_iso_count);
   return {{"iso", std::isnan(p.iso) ? Json() : Json(p.iso)},
           {"inside", name_of(p.inside_below, kInsides)},
           {"level_iso", isos},
@@ -51,7 +50,8 @@ Json parameters_json(const plc_parameters& p, ExtractOptions options) {
           {"sleeping", p.sleeping != 0},
           {"slow_vertices", p.slow_vertices != 0},
           {"renumbering", p.renumbering != 0},
-          {"space", name_of(options.space, kSpaces)}};
+          {"space", name_of(options.space, kSpaces)},
+          {"nifti_frame", name_of(options.nifti_frame, kNiftiFrames)}};
 }
 
 plc_level_report level_of(plc_context* context, const plc_surface* surface, int index) {
@@ -98,7 +98,11 @@ Json input_json(plc_context* context, const plc_image& image, const plc_surface*
   double low = 0;
   double high = 0;
   demand(context, plc_surface_input_range(context, surface, &low, &high));
-  return {{"dims", image.dims}, {"spacing", image.spacing}, {"range", {low, high}}};
+  return {{"dims", image.dims},
+          {"spacing", image.spacing},
+          {"origin", image.origin},
+          {"direction", image.direction},
+          {"range", {low, high}}};
 }
 
 Json surface_json(const plc_measures& m) {
@@ -123,9 +127,11 @@ std::string late_text(const plc_level_report& level) {
 }  // namespace
 
 int64_t peak_rss_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return int64_t{1024} * usage.ru_maxrss;  // Linux counts in KiB
+  rusage own{};
+  rusage readers{};  // child processes
+  getrusage(RUSAGE_SELF, &own);
+  getrusage(RUSAGE_CHILDREN, &readers);
+  return int64_t{1024} * std::max(own.ru_maxrss, readers.ru_maxrss);  // Linux counts in KiB
 }
 
 std::string hash_text(uint64_t hash) {
@@ -168,9 +174,13 @@ void check_report_path(const std::string& path) {
 }
 
 void write_report(const std::string& path, const Json& report) {
-  AtomicFile file(path);
-  file.write(report.dump(2) + "\n");
-  file.commit();
+  AtomicFiles files;
+  write_report(path, report, files);
+  files.commit();
+}
+
+void write_report(const std::string& path, const Json& report, AtomicFiles& files) {
+  files.add(path).write(report.dump(2) + "\n");
 }
 
 std::string summary(plc_context* context, const plc_image& image, const plc_surface* surface,

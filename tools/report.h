@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/pellicle.h"
+#include "tools/atomic_file.h"
 #include "tools/extract_options.h"
 
 namespace plc::tools {
@@ -25,6 +26,9 @@ nlohmann::ordered_json make_report(plc_context* context, const plc_image& image,
 
 // Atomically. Throws Failure.
 void write_report(const std::string& path, const nlohmann::ordered_json& report);
+// One of several files, which are there once those are committed.
+void write_report(const std::string& path, const nlohmann::ordered_json& report,
+                  AtomicFiles& files);
 // Throws Failure unless a file can be made at `path`.
 void check_report_path(const std::string& path);
 

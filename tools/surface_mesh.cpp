@@ -8,9 +8,8 @@ TriangleMesh mesh_of(plc_context* context, const plc_surface* surface, plc_space
   TriangleMesh mesh;
   const int64_t vertices = plc_surface_vertex_count(surface);
   const int64_t faces = plc_surface_face_count(surface);
-  std::vector<float> xyz(3 * static_cast<size_t>(vertices));
-  demand(context, plc_surface_positions(context, surface, space, xyz.data(), vertices));
-  mesh.xyz.assign(xyz.begin(), xyz.end());
+  mesh.xyz.resize(3 * static_cast<size_t>(vertices));
+  demand(context, plc_surface_positions_f64(context, surface, space, mesh.xyz.data(), vertices));
   mesh.abc.resize(3 * static_cast<size_t>(faces));
   demand(context, plc_surface_faces(context, surface, space, mesh.abc.data(), faces));
   mesh.normals.resize(3 * static_cast<size_t>(vertices));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -18,7 +19,7 @@ namespace {
 
 // Every From here has values that a To holds, or rounds to its nearest.
 template <typename From, typename To>
-void convert(const std::vector<std::byte>& from, LoadedVolume& to) {
+void convert(const SharedBytes& from, LoadedVolume& to) {
   const size_t count = from.size() / sizeof(From);
   for (size_t i = 0; i < count; ++i) {
     From value;
@@ -29,7 +30,7 @@ void convert(const std::vector<std::byte>& from, LoadedVolume& to) {
 }
 
 template <typename From>
-bool fits_i32(const std::vector<std::byte>& voxels) {
+bool fits_i32(const SharedBytes& voxels) {
   const size_t count = voxels.size() / sizeof(From);
   for (size_t i = 0; i < count; ++i) {
     From value;
@@ -41,7 +42,7 @@ bool fits_i32(const std::vector<std::byte>& voxels) {
 
 template <typename From>
 LoadedVolume converted_integers(const std::string& path, const int64_t dims[3],
-                                const std::vector<std::byte>& voxels) {
+                                const SharedBytes& voxels) {
   const bool fits = fits_i32<From>(voxels);
   LoadedVolume volume = make_volume(path, fits ? PLC_I32 : PLC_F32, dims);
   if (fits) {
@@ -52,8 +53,7 @@ LoadedVolume converted_integers(const std::string& path, const int64_t dims[3],
   return volume;
 }
 
-LoadedVolume as_they_are(plc_voxel_type type, const int64_t dims[3],
-                         std::vector<std::byte> voxels) {
+LoadedVolume as_they_are(plc_voxel_type type, const int64_t dims[3], SharedBytes voxels) {
   LoadedVolume volume;
   volume.bytes = std::move(voxels);
   volume.image.struct_size = sizeof(plc_image);
@@ -90,22 +90,22 @@ ItkHeader checked_header(const std::string& path, ItkHeader header) {
   return header;
 }
 
-std::vector<std::byte> allocate_voxels(const std::string& path, const ItkHeader& header) {
+SharedBytes allocate_voxels(const std::string& path, const ItkHeader& header) {
   const auto count = static_cast<uint64_t>(checked_voxel_count(path, header.dims.data()));
   const uint64_t bytes = count * component_size(header.component);
   const bool converted = component_size(header.component) > 4 ||
                          header.component == ItkComponent::kI8 ||
                          header.component == ItkComponent::kU32;
   require_memory(path, bytes + (converted ? count * 4 : 0));
+  allow_for(bytes);
   try {
-    return std::vector<std::byte>(bytes);
+    return SharedBytes(bytes);
   } catch (const std::bad_alloc&) {
     throw Failure{path + ": not enough memory for " + dims_text(header.dims.data()) + " voxels"};
   }
 }
 
-LoadedVolume volume_from(const std::string& path, const ItkHeader& header,
-                         std::vector<std::byte> voxels) {
+LoadedVolume volume_from(const std::string& path, const ItkHeader& header, SharedBytes voxels) {
   const int64_t* dims = header.dims.data();
   LoadedVolume volume;
   switch (header.component) {
@@ -149,19 +149,19 @@ LoadedVolume volume_from(const std::string& path, const ItkHeader& header,
 }
 
 LoadedVolume read_itk_volume(const std::string& path, ItkFormat format) {
+  check_first(path, format);
   const ItkHeader header = checked_header(path, read_itk_header(path, format));
   check_file_size(path, format, header);
-  std::vector<std::byte> voxels = allocate_voxels(path, header);
-  const bool plain = format == ItkFormat::kNifti && read_plain_nifti(path, header, voxels.data());
-  if (!plain) read_itk_voxels(path, format, header, voxels.data());
+  SharedBytes voxels = allocate_voxels(path, header);
+  read_itk_voxels(path, format, header, voxels.data());
   return volume_from(path, header, std::move(voxels));
 }
 
-LoadedVolume read_volume(const std::string& path) {
+LoadedVolume read_volume(const std::string& path, NiftiFrame frame) {
   static const std::map<std::string, ItkFormat> formats = {
-      {".nii", ItkFormat::kNifti}, {".nii.gz", ItkFormat::kNifti}, {".nrrd", ItkFormat::kNrrd},
-      {".nhdr", ItkFormat::kNrrd}, {".mha", ItkFormat::kMeta},     {".mhd", ItkFormat::kMeta},
-      {".tif", ItkFormat::kTiff},  {".tiff", ItkFormat::kTiff},    {".dcm", ItkFormat::kDicom}};
+      {".nrrd", ItkFormat::kNrrd}, {".nhdr", ItkFormat::kNrrd}, {".mha", ItkFormat::kMeta},
+      {".mhd", ItkFormat::kMeta},  {".tif", ItkFormat::kTiff},  {".tiff", ItkFormat::kTiff},
+      {".dcm", ItkFormat::kDicom}};
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) throw Failure{path + ": there is no such file"};
@@ -170,12 +170,19 @@ LoadedVolume read_volume(const std::string& path) {
   if (std::filesystem::file_size(path, error) == 0) throw Failure{path + ": is empty"};
   const std::string suffix = path_suffix(path);
   if (suffix == ".inv3") return read_inv3(path);
+  if (suffix == ".nii" || suffix == ".nii.gz") return read_nifti(path, frame);
   const auto format = formats.find(suffix);
   if (format == formats.end()) {
     throw Failure{path + ": unknown format (known are .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, " +
                   ".tif, .tiff, .dcm, .inv3 and folders of DICOM or TIFF files)"};
   }
   return read_itk_volume(path, format->second);
+}
+
+void print_warnings(const LoadedVolume& volume) {
+  for (const std::string& line : volume.warnings) {
+    std::fprintf(stderr, "pellicle: %s\n", line.c_str());
+  }
 }
 
 }  // namespace plc::tools

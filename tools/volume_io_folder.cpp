@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <system_error>
 #include <utility>
 
@@ -46,6 +45,20 @@ bool natural_less(const std::string& a, const std::string& b) {
   }
   if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
   return a < b;  // they differ in leading zeros only
+}
+
+// GDCM leaves a folder at the first entry that is neither file nor folder, and the slices that come
+// after it with it.
+void require_files(const std::string& folder) {
+  std::error_code error;
+  for (std::filesystem::directory_iterator i(folder, error), end; !error && i != end;
+       i.increment(error)) {
+    std::error_code none;
+    const std::filesystem::file_status status = i->status(none);
+    if (std::filesystem::is_regular_file(status) || std::filesystem::is_directory(status)) continue;
+    throw Failure{i->path().string() + ": is not a file, in a folder of files that are read"};
+  }
+  if (error) throw Failure{folder + ": cannot be read: " + error.message()};
 }
 
 std::vector<std::string> tiff_files(const std::string& folder) {
@@ -118,6 +131,7 @@ void read_slice(ItkFormat format, const Slice& slice, ItkComponent wanted, std::
 
 // A slice's header with one image in it, whatever number of axes the format gives it.
 ItkHeader slice_header(const std::string& file, ItkFormat format) {
+  check_first(file, format);
   ItkHeader header = read_itk_header(file, format);
   bool single = header.dims.size() >= 2;
   for (size_t axis = 2; axis < header.dims.size(); ++axis) single &= header.dims[axis] == 1;
@@ -147,7 +161,7 @@ LoadedVolume assemble(const std::string& folder, ItkFormat format, const std::ve
     header.component = common_component(header.component, slice.header.component);
   }
   header = checked_header(folder, std::move(header));
-  std::vector<std::byte> voxels = allocate_voxels(folder, header);
+  SharedBytes voxels = allocate_voxels(folder, header);
   const size_t slice_bytes = voxels.size() / slices.size();
   for (size_t i = 0; i < slices.size(); ++i) {
     read_slice(format, slices[i], header.component, voxels.data() + i * slice_bytes);
@@ -223,13 +237,16 @@ LoadedVolume read_series(const std::string& folder, const std::vector<std::strin
 }  // namespace
 
 LoadedVolume read_folder(const std::string& path) {
+  require_files(path);
   const DicomSeries series = find_dicom_series(path);
   if (!series.files.empty()) {
+    LoadedVolume volume = read_series(path, series.files);
     if (series.series_count > 1) {
-      std::cerr << path << ": holds " << series.series_count << " series; the largest is read ("
-                << series.files.size() << " files)\n";
+      volume.warnings.push_back(path + ": holds " + std::to_string(series.series_count) +
+                                " series; the largest is read (" +
+                                std::to_string(series.files.size()) + " files)");
     }
-    return read_series(path, series.files);
+    return volume;
   }
   const std::vector<std::string> files = tiff_files(path);
   if (files.empty()) throw Failure{path + ": has no DICOM or TIFF files in it"};

@@ -15,7 +15,6 @@
 #include <itkGDCMImageIO.h>
 #include <itkGDCMSeriesFileNames.h>
 #include <itkMetaImageIO.h>
-#include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
 #include <itkTIFFImageIO.h>
 #include <unistd.h>
@@ -104,8 +103,6 @@ auto guarded(const std::string& path, const char* what, const Work& work) {
 
 itk::ImageIOBase::Pointer make_reader(ItkFormat format) {
   switch (format) {
-    case ItkFormat::kNifti:
-      return itk::NiftiImageIO::New().GetPointer();
     case ItkFormat::kNrrd:
       return itk::NrrdImageIO::New().GetPointer();
     case ItkFormat::kMeta:
@@ -120,8 +117,6 @@ itk::ImageIOBase::Pointer make_reader(ItkFormat format) {
 
 const char* format_name(ItkFormat format) {
   switch (format) {
-    case ItkFormat::kNifti:
-      return "NIfTI";
     case ItkFormat::kNrrd:
       return "NRRD";
     case ItkFormat::kMeta:

@@ -7,7 +7,7 @@
 
 namespace plc::tools {
 
-enum class ItkFormat { kNifti, kNrrd, kMeta, kTiff, kDicom };
+enum class ItkFormat { kNrrd, kMeta, kTiff, kDicom };
 
 // What files hold, ITK's scalar types.
 enum class ItkComponent { kU8, kI8, kU16, kI16, kU32, kI32, kU64, kI64, kF32, kF64 };

@@ -8,10 +8,20 @@
 #include <limits>
 #include <new>
 
+#include "tools/apart.h"
+#include "tools/checked_sizes.h"
+
 namespace plc::tools {
 namespace {
 
-// 0 where the system does not say.
+std::string gibibytes(uint64_t bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f GiB", static_cast<double>(bytes) / (1024.0 * 1024 * 1024));
+  return text;
+}
+
+}  // namespace
+
 uint64_t available_memory() {
   std::ifstream file("/proc/meminfo");
   std::string key;
@@ -23,14 +33,6 @@ uint64_t available_memory() {
   }
   return 0;
 }
-
-std::string gibibytes(uint64_t bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f GiB", static_cast<double>(bytes) / (1024.0 * 1024 * 1024));
-  return text;
-}
-
-}  // namespace
 
 size_t voxel_size(plc_voxel_type type) {
   switch (type) {
@@ -76,6 +78,12 @@ void require_memory(const std::string& path, uint64_t bytes) {
                 " are available"};
 }
 
+void allow_for(uint64_t bytes) {
+  constexpr double kSecondsPerByte = 5e-8;
+  constexpr uint64_t kCopies = 4;  // ITK and the libraries under it keep some of their own
+  raise_limits({kSecondsPerByte * static_cast<double>(bytes), times(bytes, kCopies)});
+}
+
 LoadedVolume make_volume(const std::string& path, plc_voxel_type type, const int64_t dims[3]) {
   const auto count = static_cast<uint64_t>(checked_voxel_count(path, dims));
   LoadedVolume volume;
@@ -89,7 +97,7 @@ LoadedVolume make_volume(const std::string& path, plc_voxel_type type, const int
   }
   require_memory(path, count * voxel_size(type));
   try {
-    volume.bytes.resize(count * voxel_size(type));
+    volume.bytes = SharedBytes(count * voxel_size(type));
   } catch (const std::bad_alloc&) {
     throw Failure{path + ": not enough memory for " + dims_text(dims) + " voxels"};
   }

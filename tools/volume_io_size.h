@@ -1,12 +1,13 @@
-// Does a file hold the voxels its header speaks of? ITK's readers of NIfTI and MetaImage leave what
-// is missing as it happens to be, its reader of TIFF drops the pages it does not find, and none
-// looks before the memory is taken.
+// Does a file hold the voxels its header speaks of? ITK's reader of MetaImage leaves what is
+// missing as it happens to be, its reader of TIFF drops the pages it does not find, and none looks
+// before the memory is taken.
 #pragma once
 #include <cstdint>
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include "tools/checked_sizes.h"
 #include "tools/volume_io_formats.h"
 
 namespace plc::tools {
@@ -14,8 +15,6 @@ namespace plc::tools {
 // No stream of zlib unpacks to more than 1032 times its size: what claims more is not unpacked.
 constexpr uint64_t kZlibRatio = 1040;
 
-// 2^64 - 1 where the product is more.
-uint64_t times(uint64_t a, uint64_t b);
 // `bytes` for each of dims[0] x dims[1] x ... voxels; of a header's voxels.
 uint64_t product_of(const std::vector<int64_t>& dims, uint64_t bytes);
 uint64_t voxel_bytes(const ItkHeader& header);
@@ -35,6 +34,8 @@ std::string beside(const std::string& path, const std::string& name);
 bool is_numbered_name(const std::string& pattern);
 std::string numbered_name(const std::string& pattern, int64_t number);
 
+void check_meta_axes(const std::string& path);
+void check_tiff_pages(const std::string& path);
 void check_meta_size(const std::string& path, const ItkHeader& header);
 void check_nrrd_size(const std::string& path, const ItkHeader& header);
 void check_tiff_size(const std::string& path, const ItkHeader& header);

@@ -106,6 +106,16 @@ std::string numbered_name(const std::string& pattern, int64_t number) {
   return pattern.substr(0, percent) + digits + pattern.substr(end + 1);
 }
 
+void check_meta_axes(const std::string& path) {
+  constexpr double kMost =
+      10;  // as its library has it, which reads more in time that grows with it
+  std::ifstream file(path, std::ios::binary);
+  const std::string text = meta_fields(file)["NDims"];
+  double axes = 0;
+  std::from_chars(text.data(), text.data() + text.size(), axes);
+  if (axes > kMost) throw Failure{path + ": is " + printable(text) + "-D; a 3-D volume is needed"};
+}
+
 void check_meta_size(const std::string& path, const ItkHeader& header) {
   std::ifstream file(path, std::ios::binary);
   Fields fields = meta_fields(file);

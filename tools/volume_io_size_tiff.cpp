@@ -2,7 +2,7 @@
 // they must be able to hold the voxels.
 #include <algorithm>
 #include <fstream>
-#include <limits>
+#include <unordered_set>
 
 #include "tools/mesh_io_text.h"
 #include "tools/volume_io_size.h"
@@ -13,17 +13,27 @@ namespace {
 class TiffWalker {
  public:
   explicit TiffWalker(const std::string& path)
-      : path_(path), file_(path, std::ios::binary), size_(size_of(path)), left_(size_) {}
-
-  // Of voxels at most, in bytes.
-  uint64_t walk() {
+      : path_(path), file_(path, std::ios::binary), size_(size_of(path)), left_(size_) {
     char magic[4];
     read(0, magic, sizeof magic);
     big_endian_ = magic[0] == 'M';
-    wide_ = load_value<uint16_t>(magic + 2, big_endian_) == 43;  // BigTIFF
+    const auto version = load_value<uint16_t>(magic + 2, big_endian_);
+    wide_ = version == 43;  // BigTIFF
+    is_tiff_ =
+        (magic[0] == 'I' || magic[0] == 'M') && magic[1] == magic[0] && (wide_ || version == 42);
+  }
+
+  bool is_tiff() const { return is_tiff_; }
+
+  // Of voxels at most, in bytes.
+  uint64_t walk() {
     uint64_t at = wide_ ? number<uint64_t>(8) : number<uint32_t>(4);
-    // Directories that lead back to themselves end at the number the file has room for.
-    for (uint64_t pages = size_ / 6; at != 0 && pages > 0; --pages) at = directory(at);
+    std::unordered_set<uint64_t> seen;
+    while (at != 0) {
+      if (!seen.insert(at).second)
+        throw Failure{path_ + ": is damaged (its pages lead in a circle)"};
+      at = directory(at);
+    }
     return capacity_;
   }
 
@@ -49,7 +59,7 @@ class TiffWalker {
     return load_value<T>(bytes, big_endian_);
   }
   uint64_t value(const Field& field, uint64_t index) {
-    const uint64_t at = field.at + index * field.size;
+    const uint64_t at = plus(field.at, times(index, field.size));
     if (field.size == 2) return number<uint16_t>(at);
     return field.size == 4 ? number<uint32_t>(at) : number<uint64_t>(at);
   }
@@ -82,6 +92,7 @@ class TiffWalker {
     at += wide_ ? 8 : 2;
     const uint64_t entry_size = wide_ ? 20 : 12;
     if (entries > size_ / entry_size) truncated();
+    if (entries == 0) throw Failure{path_ + ": is damaged (a page of it is empty)"};
     step(entries * entry_size);
     uint64_t compression = 1;
     Field offsets;
@@ -109,8 +120,7 @@ class TiffWalker {
       // Pieces that share their bytes count once each, up to the size of the file.
       const uint64_t counted = std::min(size, size_ - std::min(size_, packed_));
       packed_ += counted;
-      const uint64_t room = std::numeric_limits<uint64_t>::max() - capacity_;
-      capacity_ += std::min(times(counted, ratio), room);
+      capacity_ = plus(capacity_, times(counted, ratio));
     }
   }
   Field field(uint64_t entry) {
@@ -130,10 +140,16 @@ class TiffWalker {
   uint64_t left_;          // of the file, for directories
   uint64_t packed_ = 0;    // bytes of all strips and tiles
   uint64_t capacity_ = 0;  // bytes of voxels they may stand for
-  bool big_endian_ = false, wide_ = false;
+  bool is_tiff_ = false, big_endian_ = false, wide_ = false;
 };
 
 }  // namespace
+
+// Libraries walk pages that lead in a circle for ever. What is no TIFF file they see themselves.
+void check_tiff_pages(const std::string& path) {
+  TiffWalker walker(path);
+  if (walker.is_tiff()) walker.walk();
+}
 
 void check_tiff_size(const std::string& path, const ItkHeader& header) {
   require_bytes(path, TiffWalker(path).walk(), voxel_bytes(header));

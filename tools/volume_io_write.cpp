@@ -71,25 +71,19 @@ void write_volume(const std::string& path, const plc_image& image) {
   const std::string suffix = path_suffix(path);
   const size_t bytes =
       static_cast<size_t>(checked_voxel_count(path, image.dims)) * voxel_size(image.type);
-  AtomicFile file(path);
-  if (suffix == ".nrrd") {
-    file.write(nrrd_header(image));
-    file.write(image.voxels, bytes);
-  } else if (suffix == ".mha") {
-    file.write(meta_header(image, "LOCAL"));
+  AtomicFiles files;
+  if (suffix == ".nrrd" || suffix == ".mha") {
+    AtomicFile& file = files.add(path);
+    file.write(suffix == ".nrrd" ? nrrd_header(image) : meta_header(image, "LOCAL"));
     file.write(image.voxels, bytes);
   } else if (suffix == ".mhd") {
     const std::filesystem::path raw = std::filesystem::path(path).replace_extension(".raw");
-    file.write(meta_header(image, raw.filename().string()));
-    AtomicFile data(raw.string());
-    data.write(image.voxels, bytes);
-    data.finish();
-    file.finish();
-    data.commit();
+    files.add(raw.string()).write(image.voxels, bytes);
+    files.add(path).write(meta_header(image, raw.filename().string()));
   } else {
     throw Failure{path + ": volumes are written as .nrrd, .mha or .mhd"};
   }
-  file.commit();
+  files.commit();
 }
 
 }  // namespace plc::tools

@@ -271,12 +271,15 @@ class Caller {
     const int64_t vertices = plc_surface_vertex_count(surface) + input_.below(3) - 1;
     const int64_t faces = plc_surface_face_count(surface) + input_.below(3) - 1;
     Room<float> positions(3 * vertices), normals(3 * vertices), scalars(vertices);
+    Room<double> exact(3 * vertices);
     Room<uint32_t> corners(3 * faces);
     const auto left = [&](plc_status status, const auto& room) {
       if (!ok(status)) require(room.is_untouched(), "values changed by a call that failed");
     };
     left(plc_surface_positions(context(), surface, space, maybe(2, positions.data()), vertices),
          positions);
+    left(plc_surface_positions_f64(context(), surface, space, maybe(2, exact.data()), vertices),
+         exact);
     left(plc_surface_normals(context(), surface, space, maybe(2, normals.data()), vertices),
          normals);
     left(plc_surface_scalars(context(), surface, space, scalar, maybe(2, scalars.data()), vertices),

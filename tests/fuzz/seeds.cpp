@@ -122,13 +122,14 @@ std::string with_header(const std::string& file, uint8_t component) {
 
 void put_volumes(const Seeds& seeds) {
   constexpr uint8_t kI16 = 3;
-  constexpr uint8_t kF32 = 8;
   const std::string voxels(2 * 60, 'a');
   const std::string floats = samples::raw(std::vector<float>(60, 0.5F));
   const std::string nifti = samples::nifti({5, 4, 3}, 4, 16, voxels);
-  seeds.put("volume_nifti", "plain", with_header(nifti, kI16));
-  seeds.put("volume_nifti", "gzip", with_header(samples::deflated(nifti, true), kI16));
-  seeds.put("volume_nifti", "float", with_header(samples::nifti({5, 4, 3}, 16, 32, floats), kF32));
+  // The byte behind the file chooses the frame.
+  seeds.put("volume_nifti", "plain", nifti + '\1');
+  seeds.put("volume_nifti", "gzip", samples::deflated(nifti, true) + '\2');
+  seeds.put("volume_nifti", "float",
+            samples::nifti({5, 4, 3}, 16, 32, floats) + std::string(1, '\0'));
   const std::string packed = samples::deflated(voxels, false);
   const std::string fields =
       "ObjectType = Image\nNDims = 3\nDimSize = 5 4 3\nBinaryData = True\n"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
-#include <vector>
 
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/refusal.h"
@@ -69,10 +68,7 @@ void check_volume(Bytes bytes, ItkFormat format, uint64_t ratio) {
     const ItkHeader header = plc::tools::checked_header(path, made);
     plc::tools::check_file_size(path, format, header);
     require(bytes_of(header) <= ratio * input.rest().size(), "a file that cannot hold its voxels");
-    std::vector<std::byte> voxels = plc::tools::allocate_voxels(path, header);
-    if (format == ItkFormat::kNifti) {
-      plc::tools::read_plain_nifti(path, header, voxels.data());
-    }
+    plc::tools::SharedBytes voxels = plc::tools::allocate_voxels(path, header);
     const plc::tools::LoadedVolume volume =
         plc::tools::volume_from(path, header, std::move(voxels));
     require(volume.image.voxels == volume.bytes.data(), "an image without its voxels");
@@ -81,10 +77,22 @@ void check_volume(Bytes bytes, ItkFormat format, uint64_t ratio) {
 
 }  // namespace
 
-// 1040: zlib's ratio; 65536: above that of any packing of TIFF.
-void volume_nifti(Bytes input) {
-  check_volume(input, ItkFormat::kNifti, 1040);
+// A whole file, read without ITK. Scaled bytes become four.
+void volume_nifti(Bytes bytes) {
+  static const ScratchFile scratch;
+  Input input(bytes);
+  using plc::tools::NiftiFrame;
+  constexpr NiftiFrame kFrames[] = {NiftiFrame::kAuto, NiftiFrame::kSform, NiftiFrame::kQform};
+  const NiftiFrame frame = input.one_of(kFrames);
+  scratch.put(input.rest());
+  read_or_refuse(scratch.path(), [&] {
+    const plc::tools::LoadedVolume volume = plc::tools::read_nifti(scratch.path(), frame);
+    require(volume.bytes.size() <= 4 * 1040 * input.rest().size(), "voxels of nothing");
+    require(volume.image.voxels == volume.bytes.data(), "an image without its voxels");
+  });
 }
+
+// 1040: zlib's ratio; 65536: above that of any packing of TIFF.
 void volume_meta(Bytes input) {
   check_volume(input, ItkFormat::kMeta, 1040);
 }

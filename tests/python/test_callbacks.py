@@ -82,6 +82,30 @@ def test_a_run_goes_on_after_an_exception():
     assert pellicle.Run.restore(pyramid, state).finish().hash == expected
 
 
+def test_a_run_tells_where_it_was_stopped():
+    pyramid = pellicle.Pyramid(pellicle.Volume(ball()), 0.5, levels=1)
+    seen = []
+
+    def stop_at_the_fifth(progress):
+        seen.append(progress)
+        if len(seen) == 5:
+            raise Oops
+
+    run = pellicle.Run(pyramid, progress=stop_at_the_fifth)
+    assert run.progress.iteration == 0
+    with pytest.raises(Oops):
+        run.finish()
+    assert not run.done and not run.between_levels
+    assert (run.progress.level, run.progress.iteration) == (1, 5)
+    assert run.progress.vertices == seen[-1].vertices == run.surface().vertex_count
+    # So does one that was saved there.
+    restored = pellicle.Run.restore(pyramid, run.save())
+    assert (restored.progress.level, restored.progress.iteration) == (1, 5)
+    assert not restored.done
+    run.finish()
+    assert run.done and pellicle.Run.restore(pyramid, run.save()).done
+
+
 def test_an_interrupt_ends_an_extraction_that_has_no_callbacks():
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()

@@ -13,7 +13,7 @@ import typing
 
 import numpy as np
 import pytest
-from scenes import ball, pill
+from scenes import ball, octahedron, pill
 
 import pellicle
 from pellicle import _pellicle
@@ -120,6 +120,104 @@ def test_words_and_shapes_are_checked():
         pellicle.Pyramid(pill(), 100)
     with pytest.raises(TypeError, match="Pyramid"):
         pellicle.Run(pellicle.Volume(pill()))
+
+
+@pytest.mark.parametrize(
+    "call, what",
+    [
+        (lambda s: pellicle.geodesic(s, 3.5), "source: must be an integer, not float"),
+        (lambda s: pellicle.geodesic(s, "3"), "source: must be an integer, not str"),
+        (lambda s: pellicle.geodesic(s, 2**70), "source: .* out of range"),
+        (lambda s: pellicle.Context(threads=1.5), "threads: must be an integer"),
+        (lambda s: pellicle.Context(threads=2**40), "threads: .* out of range"),
+        (lambda s: pellicle.Context(memory_limit="1 GB"), "memory_limit: must be an integer"),
+        (lambda s: pellicle.Context(simd=2), "simd: must be a str, not int"),
+        (lambda s: s.scalars(3), "name: must be a str, not int"),
+        (lambda s: pellicle.Run.restore(None, 5), "state: must be bytes, not int"),
+        (lambda s: pellicle.Run.restore(None, "abc"), "state: must be bytes, not str"),
+        (lambda s: _a_pyramid().values(0.5), "level: must be an integer, not float"),
+        (lambda s: _a_pyramid().values(2**40), "level .*: the pyramid has 0 .. 0"),
+        (lambda s: pellicle.Run(_a_pyramid()).iterate(2.5), "count: must be an integer"),
+    ],
+)
+def test_arguments_of_the_wrong_kind_are_told_in_one_line(call, what):
+    with pytest.raises((TypeError, ValueError), match=what) as caught:
+        call(pellicle.Surface.from_mesh(*octahedron()))
+    assert "\n" not in str(caught.value)
+
+
+def _a_pyramid():
+    return pellicle.Pyramid(pellicle.Volume(pill()), 100, levels=0)
+
+
+def _masked(array):
+    return np.ma.array(array, mask=np.asarray(array) == np.asarray(array).flat[0])
+
+
+@pytest.mark.parametrize(
+    "call, name",
+    [
+        (lambda: pellicle.extract(_masked(pill()), 100), "image"),
+        (lambda: pellicle.extract(pill(), 100, mask=_masked(pill())), "mask"),
+        (lambda: pellicle.extract(pill(), 100, seeds=_masked([[20, 15, 14, 5.0]])), "seeds"),
+        (lambda: pellicle.extract(pill(), 100, attachments=_masked([[20, 15, 14, 5.0]])),
+         "attachments"),
+        (lambda: pellicle.extract(pill(), 100, pins=_masked([[20, 15, 14, 5.0]])), "pins"),
+        (lambda: pellicle.extract(pill(), 100, spacing=_masked([1.0, 2, 3])), "spacing"),
+        (lambda: pellicle.extract(pill(), 100, direction=_masked(np.eye(3))), "direction"),
+        (lambda: pellicle.extract(pill(), 100, extra_force=lambda p: _masked(p.positions)),
+         "extra_force"),
+        (lambda: pellicle.geometry_from_affine(_masked(np.eye(4))), "affine"),
+        (lambda: pellicle.check_mesh((_masked(octahedron()[0]), octahedron()[1])), "vertices"),
+        (lambda: pellicle.check_mesh((octahedron()[0], _masked(octahedron()[1]))), "faces"),
+        (lambda: pellicle.nearest_vertex(octahedron(), _masked([1.0, 2, 3])), "point"),
+    ],
+)
+def test_masked_elements_are_not_taken_for_values(call, name):
+    with pytest.raises(ValueError, match=f"{name}: has masked elements.*filled"):
+        call()
+
+
+def test_an_array_whose_mask_hides_nothing_is_an_array():
+    expected = pellicle.extract(pill(), 100, levels=1).hash
+    assert pellicle.extract(np.ma.array(pill()), 100, levels=1).hash == expected
+    filled = np.ma.masked_less(pill(), 1).filled(0)
+    assert pellicle.extract(filled, 100, levels=1).hash == expected
+
+
+def test_subclasses_and_types_of_arrays_are_taken_or_refused():
+    image = pill()
+    expected = pellicle.extract(image, 100, levels=1).hash
+    class Own(np.ndarray):
+        pass
+
+    for other in (image.astype(">u2"), image.astype(">i4"), image.astype(">f4"),
+                  image.astype(">i8"), image.view(Own)):
+        assert pellicle.extract(other, 100, levels=1).hash == expected
+    vertices, faces = octahedron()
+    assert pellicle.check_mesh((np.matrix(vertices), np.matrix(faces))).valid
+    assert pellicle.check_mesh((vertices.astype(object), faces)).valid
+    for wrong in (image.astype(complex), image.astype(object), image.astype("S3"),
+                  image.astype("M8[s]")):
+        with pytest.raises(TypeError, match="image: "):
+            pellicle.extract(wrong, 100)
+    for wrong in (vertices.astype(complex), [["a", "b", "c"]] * 6):
+        with pytest.raises((TypeError, ValueError), match="vertices: must be"):
+            pellicle.check_mesh((wrong, faces))
+    with pytest.raises(TypeError, match="seeds: must be real"):
+        pellicle.extract(image, 100, seeds=[[1j, 2, 3, 4]])
+
+
+def test_places_outside_the_image_are_told_with_its_bounds():
+    where = r"lies at \(100, 15, 14\), outside the image, which reaches from \(-0.5, -0.5, -0.5\) "
+    for name in ("seeds", "pins", "attachments"):
+        with pytest.raises(pellicle.InvalidArgument, match=name[:-1] + " 0: " + where):
+            pellicle.extract(pill(), 100, **{name: [100, 15, 14, 5]})
+
+
+def test_sizes_are_told_in_mm():
+    with pytest.raises(pellicle.InvalidArgument, match="smallest radius is .* mm; use fewer"):
+        pellicle.extract(pill(), 100, spacing=(3, 3, 3), seeds=[60, 45, 42, 0.5], levels=0)
 
 
 def test_parameters_have_every_field_of_the_engine():

@@ -120,7 +120,7 @@ def test_values_that_do_not_fit_are_refused():
     with pytest.raises(ValueError, match="do not fit into float32"):
         pellicle.extract(large, 100)
     for dtype in (complex, object, "U3", np.longdouble):
-        with pytest.raises(TypeError, match="not supported"):
+        with pytest.raises(TypeError, match="not supported|must be real numbers"):
             pellicle.extract(pill().astype(dtype), 100)
 
 
@@ -327,3 +327,15 @@ def test_the_command_makes_the_same_surface(tmp_path):
         image, 100, spacing=(0.5, 1, 2), origin=(1, 2, 3), curvature=0.2
     )
     assert f"{surface.hash:016x}" in json.dumps(report)
+
+
+def test_small_voxels_far_away_are_told_in_float64(pill_surface):
+    near = pill_surface
+    far = pellicle.extract(pill(), 100, spacing=(1e-6,) * 3, origin=(1e5, 0, 0))
+    assert far.vertices_f64.dtype == np.float64 and far.vertices_f64.flags.owndata
+    assert np.array_equal(far.vertices_f64.astype(np.float32), far.vertices)
+    assert (far.vertices_f64 - [1e5, 0, 0]) * 1e6 == pytest.approx(near.vertices_f64, abs=1e-3)
+    assert not pellicle.check_mesh((far.vertices, far.faces)).valid
+    assert pellicle.check_mesh((far.vertices_f64, far.faces)).valid
+    assert pellicle.check_mesh(far).valid
+    assert far.normals == pytest.approx(near.normals, abs=1e-4)

@@ -97,7 +97,8 @@ def test_pyramids_tell_their_levels():
         assert values.shape == level.dims[::-1]
         assert values.dtype == np.float32 and 0 <= values.min() and values.max() <= 1
     assert pyramid.parameters.levels == 2
-    assert pyramid.parameters.level_iso == tuple(level.iso for level in levels)
+    assert pyramid.parameters.level_iso == tuple(level.iso for level in reversed(levels))
+    assert pyramid.parameters.level_iso[-1] == 100 != pyramid.parameters.level_iso[0]
     turned = pellicle.Pyramid(
         pellicle.Volume(pill().transpose(), order="xyz", spacing=(1, 1, 2)), 100, levels=2
     )

@@ -20,7 +20,7 @@ configure_package_config_file(tools/cmake/PellicleConfig.cmake.in
   ${CMAKE_BINARY_DIR}/PellicleConfig.cmake INSTALL_DESTINATION ${cmake_dir}
   NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/PellicleConfigVersion.cmake
-  COMPATIBILITY SameMajorVersion)
+  COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/PellicleConfig.cmake ${CMAKE_BINARY_DIR}/PellicleConfigVersion.cmake
   DESTINATION ${cmake_dir} COMPONENT libpellicle-dev)
 

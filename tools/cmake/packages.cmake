@@ -1,4 +1,4 @@
-# The Debian packages libpellicle0, libpellicle-dev and pellicle; tools/package makes them.
+# The Debian packages libpellicle0.3, libpellicle-dev and pellicle; tools/package makes them.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME pellicle)
 set(CPACK_PACKAGE_CONTACT "Pellicle developers <pellicle@localhost>")
@@ -19,9 +19,10 @@ surfaces without self-intersections from CT, MR and microscopy, coarse to
 fine.
 
 ")
-set(same_version "libpellicle0 (= ${PROJECT_VERSION})")
+set(library_package libpellicle${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(same_version "${library_package} (= ${PROJECT_VERSION})")
 
-set(CPACK_DEBIAN_LIBPELLICLE0_PACKAGE_NAME libpellicle0)
+set(CPACK_DEBIAN_LIBPELLICLE0_PACKAGE_NAME ${library_package})
 set(CPACK_DEBIAN_LIBPELLICLE0_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBPELLICLE0_PACKAGE_RECOMMENDS libmimalloc2.0)
 set(CPACK_DEBIAN_LIBPELLICLE0_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/tools/cmake/triggers)

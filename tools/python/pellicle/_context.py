@@ -8,6 +8,7 @@ from typing import Literal
 
 from . import _pellicle
 from ._records import Memory, Simd
+from ._values import integer
 
 LogLevel = Literal["warning", "info"]
 LogFunction = Callable[[LogLevel, str], object]
@@ -54,6 +55,14 @@ class Context:
         if log is not None and not callable(log):
             raise TypeError("log: must be callable")
 
+        if not isinstance(simd, str):
+            raise TypeError(f"simd: must be a str, not {type(simd).__name__}")
+        numbers = {"threads": threads, "memory_limit": memory_limit}
+        for name, number in numbers.items():
+            numbers[name] = integer(number, name)
+        if not -(2**31) <= numbers["threads"] < 2**31:
+            raise ValueError(f"threads: {threads} is out of range")
+
         def emit(level: int, line: str) -> None:
             word, number = _LEVELS[level]
             if log is not None:
@@ -61,7 +70,7 @@ class Context:
             else:
                 _logger.log(number, "%s", line)
 
-        self._core = _pellicle.Context(threads, simd, memory_limit, emit)
+        self._core = _pellicle.Context(numbers["threads"], simd, numbers["memory_limit"], emit)
 
     @classmethod
     def _of(cls, core: _pellicle.Context) -> Context:

@@ -45,7 +45,7 @@ def extract(
     Parameters
     ----------
     image : array_like
-        Three axes. uint8, int16, uint16, int32 and float32 are taken as they are, without a copy
+        Three axes, no masked elements. uint8, int16, uint16, int32 and float32 are taken as they are, without a copy
         where x is fastest in memory; bool, int8, uint32, int64, uint64 and float16 are converted
         where no value changes, else refused; float64 is rounded to float32. It must not change
         during the call.
@@ -64,16 +64,17 @@ def extract(
     space : {"lps", "ras", "voxel"}
         Of all places below and of the result. Places are x, y, z, whatever the order.
     seeds : array_like, optional
-        Rows of x, y, z, radius: spheres to start from, apart from each other.
+        Rows of x, y, z, radius (mm): spheres to start from, apart from each other, their centres
+        in the image.
     mask : array_like, optional
         An array of the image's shape and order; the start is the surface of where it is not 0.
     mesh : Surface or (vertices, faces), optional
         Closed, oriented and free of self-intersections, to start from.
     attachments : array_like, optional
-        Rows of x, y, z, radius[, strength]: places that draw the surface near them until it goes
+        Rows of x, y, z, radius[, strength]: places in the image that draw the surface near them until it goes
         through them. The strength is relative to `attraction`, 1 where it is left out.
     pins : array_like, optional
-        Rows of x, y, z, radius: balls in which no force moves a vertex.
+        Rows of x, y, z, radius: balls about places in the image in which no force moves a vertex.
     extra_force : callable, optional
         ``extra_force(points: ForcePoints)`` returns an (n, 3) array of forces in the space, or
         None. 1 is the pull of `iso` with attraction 1 on a vertex whose value is a whole window

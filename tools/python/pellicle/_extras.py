@@ -15,6 +15,7 @@ from ._meshes import MeshLike, arrays_of
 from ._parameters import Parameters
 from ._records import ForcePoints, LevelReport, Progress, Space, Verdict
 from ._surface import Surface, checked_space
+from ._values import plain_array, real_array
 
 ProgressFunction = Callable[[Progress], object]
 LevelFunction = Callable[[LevelReport, Surface], Verdict | None]
@@ -81,7 +82,7 @@ class Extras:
 def _rows(values: npt.ArrayLike | None, name: str, columns: int) -> _pellicle.Rows | None:
     if values is None:
         return None
-    rows = np.ascontiguousarray(values, dtype=np.float64)
+    rows = np.ascontiguousarray(real_array(values, name))
     if rows.size == 0:
         return None
     if rows.ndim == 1:
@@ -95,7 +96,7 @@ def _attachments(values: npt.ArrayLike | None) -> _pellicle.Rows | None:
     """Rows of x, y, z, radius, strength; the strength is 1 where it is left out."""
     if values is None:
         return None
-    rows = np.atleast_2d(np.asarray(values, dtype=np.float64))
+    rows = np.atleast_2d(real_array(values, "attachments"))
     if rows.ndim == 2 and rows.shape[1] == 4:
         rows = np.hstack([rows, np.ones((len(rows), 1))])
     return _rows(rows, "attachments", 5)
@@ -145,7 +146,7 @@ def _force(
         answer = function(ForcePoints(level, positions, normals))
         if answer is None:
             return None
-        forces = np.asarray(answer, dtype=np.float32)
+        forces = plain_array(answer, "extra_force").astype(np.float32, copy=False)
         if forces.shape not in (shape, (3,)):
             raise ValueError(
                 f"extra_force: must return an array of shape {shape}, not {forces.shape}"

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from . import _pellicle
 from ._records import Triple
+from ._values import plain_array, real_array
 
 Order = Literal["zyx", "xyz"]
 Vector = Sequence[float] | npt.NDArray[np.floating[Any]]
@@ -41,7 +42,7 @@ def geometry_from_affine(affine: npt.ArrayLike, space: Literal["ras", "lps"] = "
     Geometry
         For ``extract(voxels, iso, order="xyz", **geometry_from_affine(image.affine))``.
     """
-    matrix = np.array(affine, dtype=np.float64)
+    matrix = real_array(affine, "affine").copy()
     if matrix.shape != (4, 4):
         raise ValueError(f"affine: must be 4 x 4, not of shape {matrix.shape}")
     if space not in ("ras", "lps"):
@@ -59,7 +60,7 @@ def geometry_from_affine(affine: npt.ArrayLike, space: Literal["ras", "lps"] = "
 
 
 def _triple(name: str, values: Vector) -> Triple:
-    array = np.asarray(values, dtype=np.float64)
+    array = real_array(values, name)
     if array.shape != (3,):
         raise ValueError(f"{name}: must be three numbers: x, y, z")
     return (float(array[0]), float(array[1]), float(array[2]))
@@ -69,7 +70,7 @@ def geometry_of(
     spacing: Vector, origin: Vector, direction: npt.ArrayLike | None
 ) -> _pellicle.Geometry:
     """As the engine takes it."""
-    axes = np.asarray(_IDENTITY if direction is None else direction, dtype=np.float64)
+    axes = real_array(_IDENTITY if direction is None else direction, "direction")
     if axes.shape not in ((3, 3), (9,)):
         raise ValueError("direction: must be 3 x 3, or its nine numbers row by row")
     return _pellicle.Geometry(
@@ -81,7 +82,7 @@ def voxels_of(image: npt.ArrayLike, order: Order, name: str = "image") -> npt.ND
     """The array indexed [x, y, z], of a type of the engine. A view, where no value changes."""
     if order not in ("zyx", "xyz"):
         raise ValueError(f"order {order!r}: must be 'zyx' or 'xyz'")
-    array = np.asarray(image)
+    array = plain_array(image, name)
     if array.ndim != 3:
         raise ValueError(f"{name}: must have three axes, not {array.ndim}")
     array = _typed(array, name)

@@ -21,6 +21,7 @@ from ._records import (
     Distances,
     check_of,
 )
+from ._values import integer, plain_array, real_array
 
 if TYPE_CHECKING:
     from ._surface import Surface
@@ -38,11 +39,11 @@ def arrays_of(mesh: MeshLike, name: str = "mesh") -> _pellicle.Mesh:
     from ._surface import Surface
 
     if isinstance(mesh, Surface):
-        return mesh.vertices.astype(np.float64), mesh.faces
+        return mesh.vertices_f64, mesh.faces
     if not isinstance(mesh, (tuple, list)) or len(mesh) != 2:
         raise TypeError(f"{name}: must be a Surface or (vertices, faces)")
-    vertices = np.ascontiguousarray(mesh[0], dtype=np.float64)
-    faces = np.asarray(mesh[1])
+    vertices = np.ascontiguousarray(real_array(mesh[0], f"{name}: vertices"))
+    faces = plain_array(mesh[1], f"{name}: faces")
     rows_of_three(vertices, f"{name}: vertices")
     rows_of_three(faces, f"{name}: faces")
     if faces.dtype.kind not in "iu":
@@ -123,7 +124,7 @@ def nearest_vertex(
     int or None
         None where the mesh has no face.
     """
-    place = np.asarray(point, dtype=np.float64)
+    place = real_array(point, "point")
     if place.shape != (3,):
         raise ValueError("point: must be three numbers: x, y, z")
     vertex = _pellicle.nearest_vertex(core_of(context), arrays_of(mesh), place.tolist())
@@ -150,7 +151,7 @@ def geodesic(
     numpy.ndarray
         (n,) float64; infinity where no path leads.
     """
-    return _pellicle.geodesic(core_of(context), arrays_of(mesh), source)
+    return _pellicle.geodesic(core_of(context), arrays_of(mesh), integer(source, "source"))
 
 
 def distance(mesh: MeshLike, other: MeshLike, *, context: Context | None = None) -> Distances:

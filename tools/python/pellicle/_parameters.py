@@ -28,11 +28,12 @@ class Parameters:
     inside_below : bool
         False: the object is where the image is >= iso; True: where it is <= iso.
     level_iso : sequence of float or None
-        The value for each level, the full image first, one more than `levels`. None: derived.
+        The value for each level, coarse to fine: the full image last, one more than `levels`.
+        None: derived. Since 0.3; before, the full image came first.
     window_low, window_high : float or None
         Image values mapped to 0 and 1. None: derived.
     pad_value : float or None
-        What surrounds the image. None: the outside end of the window.
+        What surrounds the image, not on the object's side of iso. None: the outside end of the window.
     feature : {"none", "gradient_norm"}
         What the evolution takes for the image: itself, or the norm of its gradient per mm.
     feature_sigma : float

@@ -127,7 +127,8 @@ class LevelReport:
     unit : float
         U_h, mm.
     delta : float
-        The invariant of the constraints (1)-(3), in mesh units (voxels of level 0 by default).
+        The invariant of the constraints (1)-(3), in voxels of level 0 (in their shortest sides where
+        `anisotropy` is not "voxel").
     iso : float or None
         pi_I of this level, in the image's units; None: not set.
     iterations, vertices : int

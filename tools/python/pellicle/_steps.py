@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -9,12 +10,14 @@ import numpy.typing as npt
 
 from . import _pellicle
 from ._context import Context, core_of
+from ._errors import InvalidArgument
 from ._extras import Extras, ForceFunction, LevelFunction, ProgressFunction
 from ._images import Order, Vector, geometry_of, voxels_of
 from ._meshes import MeshLike
 from ._parameters import Parameters, fields_of
 from ._records import Progress, PyramidLevel, Range, Space
 from ._surface import Surface
+from ._values import integer
 
 # The values of plc_amount.
 _ONE_ITERATION, _ONE_LEVEL, _ALL_LEVELS = 0, 1, 2
@@ -137,12 +140,15 @@ class Pyramid:
 
     @property
     def levels(self) -> tuple[PyramidLevel, ...]:
-        """The images, the full one first."""
+        """The images: `levels[h]` is I_h, so that the full one comes first."""
         return tuple(PyramidLevel(**level) for level in self._core.levels())
 
     def values(self, level: int) -> npt.NDArray[np.float32]:
         """The image of a level: a new array of values 0 .. 1, indexed as the volume's image."""
-        values = self._core.values(level)
+        number = integer(level, "level")
+        if not 0 <= number < len(self.levels):
+            raise InvalidArgument(f"level {number}: the pyramid has 0 .. {len(self.levels) - 1}")
+        values = self._core.values(number)
         return values if self._order == "zyx" else values.transpose()
 
 
@@ -205,12 +211,10 @@ class Run:
         core = pyramid._core.context if context is None else core_of(context)
         self._space = space
         self._callbacks = extras.callbacks()
-        self._done = False
-        self._between_levels = False
-        self._progress = Progress(0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0)
         self._core = _pellicle.Run(
             core, pyramid._core, fields_of(wanted), extras.core(), _state
         )
+        self._look(self._core.state())
 
     @classmethod
     def restore(cls, pyramid: Pyramid, state: bytes, **arguments: Any) -> Run:
@@ -221,7 +225,7 @@ class Run:
         pyramid : Pyramid
             Equal to that of the saved run.
         state : bytes
-            Of `save`, of this version of the library. `done` is False until the first call.
+            Of `save`, of this version of the library.
         **arguments
             Those of `Run`, equal to those of the saved run but for callbacks and context.
 
@@ -231,6 +235,8 @@ class Run:
             Where the bytes are no state of a run, or of another version, pyramid, parameters or
             extras.
         """
+        if not isinstance(state, (bytes, bytearray, memoryview)):
+            raise TypeError(f"state: must be bytes, not {type(state).__name__}")
         return cls(pyramid, _state=bytes(state), **arguments)
 
     @property
@@ -250,7 +256,7 @@ class Run:
 
     @property
     def progress(self) -> Progress:
-        """Of the last iteration, as of the last call that ended; zeros before the first."""
+        """Of the last iteration, whether the call has ended or was stopped; zeros before the first."""
         return self._progress
 
     def iterate(self, count: int = 1) -> bool:
@@ -261,7 +267,7 @@ class Run:
         bool
             `done`.
         """
-        for _ in range(count):
+        for _ in range(integer(count, "count")):
             if self._advance(_ONE_ITERATION):
                 break
         return self._done
@@ -290,11 +296,19 @@ class Run:
         return self._core.save()
 
     def _advance(self, amount: int) -> bool:
-        state = self._core.advance(amount, *self._callbacks)
-        self._done = state["done"]
-        self._between_levels = state["between_levels"]
-        self._progress = Progress(**state["progress"])
+        try:
+            state = self._core.advance(amount, *self._callbacks)
+        except BaseException:
+            with suppress(ValueError):  # of a run that has failed, or is in the middle of a call
+                self._look(self._core.state())
+            raise
+        self._look(state)
         return self._done
+
+    def _look(self, state: dict[str, Any]) -> None:
+        self._done: bool = state["done"]
+        self._between_levels: bool = state["between_levels"]
+        self._progress = Progress(**state["progress"])
 
 
 def chosen(

@@ -120,6 +120,15 @@ class Surface:
         return self._core.positions(self._space)
 
     @property
+    def vertices_f64(self) -> npt.NDArray[np.float64]:
+        """(n, 3) float64: as `vertices`, but not rounded to float32.
+
+        That rounding makes faces meet where the surface lies millions of voxels away from the
+        space's origin.
+        """
+        return self._core.positions_f64(self._space)
+
+    @property
     def faces(self) -> npt.NDArray[np.uint32]:
         """(m, 3) uint32 indices, counter-clockwise seen from outside in the space."""
         return self._core.faces(self._space)
@@ -144,6 +153,8 @@ class Surface:
         numpy.ndarray
             (n,) float32.
         """
+        if not isinstance(name, str):
+            raise TypeError(f"name: must be a str, not {type(name).__name__}")
         return self._core.scalars(name, self._space)
 
     @property

@@ -42,6 +42,14 @@ class Run {
     return dict_of(state);
   }
 
+  py::dict state() const {
+    auto state = unwritten<plc_run_state>();
+    state.progress.struct_size = sizeof state.progress;
+    context()->call(
+        [&](plc_context* engine) { return plc_run_get_state(engine, handle_.get(), &state); });
+    return dict_of(state);
+  }
+
   std::shared_ptr<AnySurface> surface() const {
     auto copy = std::make_shared<OwnSurface>(context());
     context()->call(
@@ -76,6 +84,7 @@ void bind_run(py::module_& module) {
                     const std::optional<py::bytes>&>())
       .def_property_readonly("context", &Run::context)
       .def("advance", &Run::advance)
+      .def("state", &Run::state)
       .def("surface", &Run::surface)
       .def("save", &Run::save);
 }

@@ -53,6 +53,15 @@ py::array_t<float> positions(const AnySurface& surface, const std::string& space
       });
 }
 
+py::array_t<double> positions_f64(const AnySurface& surface, const std::string& space) {
+  const plc_space s = space_of(space);
+  return rows_of_three<double>(
+      surface, vertex_count(surface),
+      [s](plc_context* context, const plc_surface* handle, double* xyz, int64_t capacity) {
+        return plc_surface_positions_f64(context, handle, s, xyz, capacity);
+      });
+}
+
 py::array_t<float> normals(const AnySurface& surface, const std::string& space) {
   const plc_space s = space_of(space);
   return rows_of_three<float>(
@@ -158,6 +167,7 @@ void bind_surface(py::module_& module) {
       .def_property_readonly("vertex_count", &vertex_count)
       .def_property_readonly("face_count", &face_count)
       .def("positions", &positions)
+      .def("positions_f64", &positions_f64)
       .def("normals", &normals)
       .def("faces", &faces)
       .def("scalars", &scalars)
