@@ -10,8 +10,9 @@ namespace plc {
 
 namespace {
 
-// Lattice cells from the middle to the end of an axis, at most: what is longer is divided by
-// conform().
+// Lattice cells from the middle to the end of the shortest axis, at most: what is longer is divided
+// by conform(). Cells are cubes: those of a rod stretched like it would have slivers for faces, and
+// their division crowds thousands of vertices where two long edges nearly meet.
 constexpr double kMostCells = 16;
 // What conform() leaves is near its shortest edges; a bubble is to have longer ones, none as long
 // as the guards cannot see (kFaceReach).
@@ -36,8 +37,8 @@ Status make_stretched_bubble(Mesh& mesh, const std::array<double, 3>& middle,
   ImageView lattice;
   std::array<double, 3> step{};    // of the lattice, in halves
   std::array<double, 3> centre{};  // of the bubble, in voxels of the lattice
+  const double pitch = std::max(delta, *std::min_element(half.begin(), half.end()) / kMostCells);
   for (size_t a = 0; a < 3; ++a) {
-    const double pitch = std::max(delta, half[a] / kMostCells);
     const double reach = std::ceil(half[a] / pitch) + 1;
     lattice.dims[a] = static_cast<int32_t>(2 * reach + 1);
     lattice.scale[a] = static_cast<float>(1 / pitch);
