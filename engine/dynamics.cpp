@@ -378,7 +378,7 @@ void Dynamics::scale_time_step(const Guide& guide) {
 
 void Dynamics::hold_pinned(const Guide& guide) {
   for_runs([&](uint32_t begin, uint32_t end) {
-    for (uint32_t v = begin; v < end; ++v) {
+    for (uint32_t v = begin; v < std::min(end, mesh_.slots()); ++v) {
       if (!pinned(*guide.user, mesh_.at(v))) continue;
       mesh_.displacement.set(v, {});
       rate_.set(v, {});

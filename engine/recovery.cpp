@@ -233,8 +233,7 @@ Status Recovery::check_growth() const {
   return {ErrorCode::kInvalidData,
           "level " + std::to_string(level_) + ": the surface has grown to " +
               std::to_string(mesh_.vertex_count()) + " vertices, the image has room for " +
-              std::to_string(round_.most_vertices) +
-              ": its forces drive it on without end"};
+              std::to_string(round_.most_vertices) + ": its forces drive it on without end"};
 }
 
 Status Recovery::told() const {
