@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/volume_io.h"
+#include "tools/volume/volume_io.h"
 
 namespace peer {
 
