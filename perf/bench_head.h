@@ -8,6 +8,7 @@
 #include "engine/base/constants.h"
 #include "engine/recover/recovery.h"
 #include "perf/bench_copy.h"
+#include "tools/file/failure.h"
 #include "tools/volume/volume_io.h"
 
 namespace bench {

@@ -22,6 +22,7 @@
 #include "kernels/ring_forces.h"
 #include "perf/bench_head.h"
 #include "pyramid/memory.h"
+#include "tools/file/failure.h"
 
 namespace {
 

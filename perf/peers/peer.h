@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/file/failure.h"
 #include "tools/volume/volume_io.h"
 
 namespace peer {

@@ -16,6 +16,7 @@
 #include "tests/samples/limited_memory.h"
 #include "tests/samples/sample_files.h"
 #include "tests/tools/tool_fixtures.h"
+#include "tools/file/failure.h"
 #include "tools/volume/volume_io.h"
 
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "tests/tools/tool_fixtures.h"
-#include "tools/volume/volume_io.h"
+#include "tools/file/failure.h"
 
 namespace {
 

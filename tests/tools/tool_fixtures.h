@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "tools/volume/volume_io.h"
+#include "tools/file/failure.h"
 
 namespace fixtures {
 

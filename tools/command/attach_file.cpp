@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "tools/file/failure.h"
 #include "tools/file/printable.h"
-#include "tools/volume/volume_io.h"
 
 namespace plc::tools {
 

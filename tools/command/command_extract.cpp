@@ -18,9 +18,10 @@
 #include "tools/command/report.h"
 #include "tools/command/surface_mesh.h"
 #include "tools/command/trace_file.h"
+#include "tools/file/failure.h"
+#include "tools/file/memory.h"
 #include "tools/mesh/mesh_io.h"
 #include "tools/volume/volume_io.h"
-#include "tools/volume/volume_io_memory.h"
 
 namespace plc::tools {
 

@@ -16,6 +16,7 @@
 #include "tools/command/progress_line.h"
 #include "tools/command/report.h"
 #include "tools/command/surface_mesh.h"
+#include "tools/file/failure.h"
 #include "tools/mesh/mesh_io.h"
 #include "tools/volume/labels.h"
 #include "tools/volume/volume_io.h"

@@ -13,6 +13,7 @@
 #include "tools/command/mesh_precision.h"
 #include "tools/command/option_values.h"
 #include "tools/command/report.h"
+#include "tools/file/failure.h"
 #include "tools/mesh/mesh_io.h"
 
 namespace plc::tools {

@@ -8,8 +8,8 @@
 #include "tools/file/apart.h"
 #include "tools/file/atomic_file.h"
 #include "tools/file/checked_sizes.h"
+#include "tools/file/failure.h"
 #include "tools/render/render_png.h"
-#include "tools/volume/volume_io.h"
 
 namespace plc::tools {
 

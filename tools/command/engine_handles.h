@@ -4,7 +4,7 @@
 #include <string>
 
 #include "engine/pellicle.h"
-#include "tools/volume/volume_io.h"
+#include "tools/file/failure.h"
 
 namespace plc::tools {
 

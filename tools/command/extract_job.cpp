@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "tools/volume/volume_io.h"
+#include "tools/file/failure.h"
 
 namespace plc::tools {
 

@@ -24,7 +24,7 @@
 #include "tools/command/interrupt.h"
 #include "tools/command/option_values.h"
 #include "tools/command/slicer_description.h"
-#include "tools/volume/volume_io.h"
+#include "tools/file/failure.h"
 
 namespace {
 

@@ -5,7 +5,8 @@
 #include <utility>
 
 #include "tools/command/command_check.h"
-#include "tools/volume/volume_io_memory.h"
+#include "tools/file/failure.h"
+#include "tools/file/path_suffix.h"
 
 namespace plc::tools {
 

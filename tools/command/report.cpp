@@ -8,7 +8,6 @@
 #include <cstdio>
 
 #include "tools/command/engine_handles.h"
-#include "tools/volume/volume_io.h"
 
 namespace plc::tools {
 

@@ -20,7 +20,7 @@
 #include <utility>
 
 #include "tools/file/checked_sizes.h"
-#include "tools/volume/volume_io.h"
+#include "tools/file/failure.h"
 
 // Sanitizers reserve address space of their own and do not survive a limit.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

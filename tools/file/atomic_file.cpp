@@ -9,7 +9,7 @@
 #include <map>
 #include <system_error>
 
-#include "tools/volume/volume_io.h"
+#include "tools/file/failure.h"
 
 namespace plc::tools {
 namespace {

@@ -1,9 +1,9 @@
-#include "tools/file/mesh_io_text.h"
+#include "tools/file/text.h"
 
 #include <charconv>
 
+#include "tools/file/failure.h"
 #include "tools/file/printable.h"
-#include "tools/volume/volume_io.h"
 
 namespace plc::tools {
 namespace {

@@ -60,14 +60,6 @@ void put_value(std::string& out, T value) {
 
 // Nine significant digits: every float is read back as it was; as many as it takes where `exact`.
 void put_real(std::string& out, double value, bool exact = false);
-// Of a mesh; binary.
-inline void put_coordinate(std::string& out, double value, bool exact) {
-  if (exact) {
-    put_value(out, value);
-  } else {
-    put_value(out, static_cast<float>(value));
-  }
-}
 void put_integer(std::string& out, uint64_t value);
 
 // Writes the text when there is much of it, or in any case where `all`.

@@ -7,7 +7,7 @@
 #include <limits>
 #include <memory>
 
-#include "tools/volume/volume_io.h"
+#include "tools/file/failure.h"
 
 namespace plc::tools {
 namespace {

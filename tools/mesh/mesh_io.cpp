@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "tools/file/checked_sizes.h"
+#include "tools/file/failure.h"
+#include "tools/file/memory.h"
+#include "tools/file/path_suffix.h"
 #include "tools/mesh/mesh_io_formats.h"
-#include "tools/volume/volume_io_memory.h"
 
 namespace plc::tools {
 namespace {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "tools/file/atomic_file.h"
-#include "tools/volume/volume_io.h"
 
 namespace plc::tools {
 

@@ -1,7 +1,7 @@
 // Wavefront OBJ: v, vn and f; everything else is passed over.
 #include <vector>
 
-#include "tools/file/mesh_io_text.h"
+#include "tools/file/text.h"
 #include "tools/mesh/mesh_io_formats.h"
 
 namespace plc::tools {

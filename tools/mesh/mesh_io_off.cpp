@@ -1,7 +1,7 @@
 // OFF: a keyword, counts, then a line per vertex and per face.
 #include <vector>
 
-#include "tools/file/mesh_io_text.h"
+#include "tools/file/text.h"
 #include "tools/mesh/mesh_io_formats.h"
 
 namespace plc::tools {

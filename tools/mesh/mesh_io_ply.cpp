@@ -4,13 +4,21 @@
 #include <optional>
 #include <vector>
 
-#include "tools/file/mesh_io_text.h"
+#include "tools/file/failure.h"
 #include "tools/file/printable.h"
+#include "tools/file/text.h"
 #include "tools/mesh/mesh_io_formats.h"
-#include "tools/volume/volume_io.h"
 
 namespace plc::tools {
 namespace {
+
+void put_coordinate(std::string& out, double value, bool exact) {
+  if (exact) {
+    put_value(out, value);
+  } else {
+    put_value(out, static_cast<float>(value));
+  }
+}
 
 enum class Encoding { kAscii, kLittle, kBig };
 

@@ -5,9 +5,9 @@
 #include <limits>
 #include <unordered_map>
 
-#include "tools/file/mesh_io_text.h"
+#include "tools/file/failure.h"
+#include "tools/file/text.h"
 #include "tools/mesh/mesh_io_formats.h"
-#include "tools/volume/volume_io.h"
 
 namespace plc::tools {
 namespace {

@@ -2,11 +2,11 @@
 #include <cstdlib>
 #include <vector>
 
-#include "tools/file/mesh_io_text.h"
+#include "tools/file/failure.h"
+#include "tools/file/text.h"
 #include "tools/file/xml_reader.h"
 #include "tools/mesh/mesh_io_formats.h"
 #include "tools/mesh/mesh_io_vtp_array.h"
-#include "tools/volume/volume_io.h"
 
 namespace plc::tools {
 namespace {

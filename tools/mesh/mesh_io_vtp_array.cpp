@@ -6,10 +6,10 @@
 #include <cstdint>
 
 #include "tools/file/checked_sizes.h"
-#include "tools/file/mesh_io_text.h"
+#include "tools/file/failure.h"
+#include "tools/file/memory.h"
 #include "tools/file/printable.h"
-#include "tools/volume/volume_io.h"
-#include "tools/volume/volume_io_memory.h"
+#include "tools/file/text.h"
 
 namespace plc::tools {
 namespace {

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include "tools/file/failure.h"
+#include "tools/file/memory.h"
 #include "tools/phantom/phantoms_canvas.h"
 #include "tools/phantom/phantoms_random.h"
 #include "tools/volume/volume_io_memory.h"

@@ -8,10 +8,10 @@
 #include <thread>
 #include <utility>
 
+#include "tools/file/failure.h"
 #include "tools/render/render_camera.h"
 #include "tools/render/render_mesh.h"
 #include "tools/render/render_sampling.h"
-#include "tools/volume/volume_io.h"
 
 namespace plc::tools {
 

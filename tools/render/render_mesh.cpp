@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tools/file/failure.h"
+
 namespace plc::tools {
 
 namespace {

@@ -3,6 +3,7 @@
 #include <png.h>
 
 #include "tools/file/atomic_file.h"
+#include "tools/file/failure.h"
 
 namespace plc::tools {
 

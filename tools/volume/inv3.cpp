@@ -15,6 +15,7 @@
 #include <optional>
 #include <vector>
 
+#include "tools/file/failure.h"
 #include "tools/file/printable.h"
 #include "tools/file/xml_reader.h"
 #include "tools/volume/volume_io_memory.h"

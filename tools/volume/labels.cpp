@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <unordered_map>
 
-#include "tools/volume/volume_io.h"
+#include "tools/file/failure.h"
 
 namespace plc::tools {
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "tools/volume/volume_io.h"
+#include "tools/file/failure.h"
 
 namespace plc::tools {
 namespace {

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <memory>
 
-#include "tools/file/mesh_io_text.h"
-#include "tools/volume/volume_io.h"
+#include "tools/file/failure.h"
+#include "tools/file/text.h"
 
 namespace plc::tools {
 namespace {

@@ -10,6 +10,9 @@
 #include <system_error>
 #include <utility>
 
+#include "tools/file/failure.h"
+#include "tools/file/memory.h"
+#include "tools/file/path_suffix.h"
 #include "tools/volume/inv3.h"
 #include "tools/volume/volume_io_formats.h"
 #include "tools/volume/volume_io_memory.h"

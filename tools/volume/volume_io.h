@@ -10,11 +10,6 @@
 
 namespace plc::tools {
 
-// What a command reports to its user: one line, without a newline.
-struct Failure {
-  std::string message;
-};
-
 // A volume in memory; image.voxels points into bytes.
 struct LoadedVolume {
   plc_image image{};

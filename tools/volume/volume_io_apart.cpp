@@ -8,6 +8,7 @@
 
 #include "tools/file/apart.h"
 #include "tools/file/checked_sizes.h"
+#include "tools/file/failure.h"
 #include "tools/volume/volume_io.h"
 #include "tools/volume/volume_io_memory.h"
 

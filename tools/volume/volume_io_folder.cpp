@@ -7,8 +7,9 @@
 #include <system_error>
 #include <utility>
 
+#include "tools/file/failure.h"
+#include "tools/file/path_suffix.h"
 #include "tools/volume/volume_io_formats.h"
-#include "tools/volume/volume_io_memory.h"
 
 namespace plc::tools {
 namespace {

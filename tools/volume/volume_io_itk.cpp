@@ -23,6 +23,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "tools/file/failure.h"
 #include "tools/volume/volume_io_size.h"
 
 namespace plc::tools {

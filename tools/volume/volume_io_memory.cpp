@@ -1,38 +1,12 @@
 #include "tools/volume/volume_io_memory.h"
 
-#include <algorithm>
-#include <cctype>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <new>
 
-#include "tools/file/apart.h"
-#include "tools/file/checked_sizes.h"
+#include "tools/file/failure.h"
+#include "tools/file/memory.h"
 
 namespace plc::tools {
-namespace {
-
-std::string gibibytes(uint64_t bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f GiB", static_cast<double>(bytes) / (1024.0 * 1024 * 1024));
-  return text;
-}
-
-}  // namespace
-
-uint64_t available_memory() {
-  std::ifstream file("/proc/meminfo");
-  std::string key;
-  uint64_t kibibytes = 0;
-  std::string unit;
-  while (file >> key >> kibibytes) {
-    if (key == "MemAvailable:") return kibibytes * 1024;
-    std::getline(file, unit);
-  }
-  return 0;
-}
 
 size_t voxel_size(plc_voxel_type type) {
   switch (type) {
@@ -71,19 +45,6 @@ int64_t checked_voxel_count(const std::string& path, const int64_t dims[3]) {
   return count;
 }
 
-void require_memory(const std::string& path, uint64_t bytes) {
-  const uint64_t available = available_memory();
-  if (available == 0 || bytes <= available) return;
-  throw Failure{path + ": needs " + gibibytes(bytes) + " of memory, " + gibibytes(available) +
-                " are available"};
-}
-
-void allow_for(uint64_t bytes) {
-  constexpr double kSecondsPerByte = 5e-8;
-  constexpr uint64_t kCopies = 4;  // ITK and the libraries under it keep some of their own
-  raise_limits({kSecondsPerByte * static_cast<double>(bytes), times(bytes, kCopies)});
-}
-
 LoadedVolume make_volume(const std::string& path, plc_voxel_type type, const int64_t dims[3]) {
   const auto count = static_cast<uint64_t>(checked_voxel_count(path, dims));
   LoadedVolume volume;
@@ -103,18 +64,6 @@ LoadedVolume make_volume(const std::string& path, plc_voxel_type type, const int
   }
   volume.image.voxels = volume.bytes.data();
   return volume;
-}
-
-std::string path_suffix(const std::string& path) {
-  const auto lower = [](std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-  };
-  const std::filesystem::path name(path);
-  std::string last = lower(name.extension().string());
-  if (last != ".gz") return last;
-  return lower(name.stem().extension().string()) + last;
 }
 
 }  // namespace plc::tools

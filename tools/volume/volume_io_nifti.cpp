@@ -8,7 +8,8 @@
 #include <memory>
 #include <optional>
 
-#include "tools/file/mesh_io_text.h"
+#include "tools/file/failure.h"
+#include "tools/file/text.h"
 #include "tools/volume/nifti_header.h"
 #include "tools/volume/volume_io_formats.h"
 #include "tools/volume/volume_io_size.h"

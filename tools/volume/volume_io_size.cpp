@@ -9,8 +9,9 @@
 #include <memory>
 #include <system_error>
 
+#include "tools/file/failure.h"
+#include "tools/file/memory.h"
 #include "tools/file/printable.h"
-#include "tools/volume/volume_io_memory.h"
 
 namespace plc::tools {
 namespace {

@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 
+#include "tools/file/failure.h"
 #include "tools/file/printable.h"
 #include "tools/volume/volume_io_size.h"
 

@@ -4,7 +4,8 @@
 #include <fstream>
 #include <unordered_set>
 
-#include "tools/file/mesh_io_text.h"
+#include "tools/file/failure.h"
+#include "tools/file/text.h"
 #include "tools/volume/volume_io_size.h"
 
 namespace plc::tools {

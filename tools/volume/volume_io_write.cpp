@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "tools/file/atomic_file.h"
+#include "tools/file/failure.h"
+#include "tools/file/path_suffix.h"
 #include "tools/volume/volume_io.h"
 #include "tools/volume/volume_io_memory.h"
 
