@@ -1,13 +1,52 @@
 // The C API: checks of any mesh, and surfaces made of one.
+#include "engine/api/api_check.h"
+
 #include <algorithm>
 
 #include "engine/api/api_extras.h"
 #include "engine/api/handles.h"
-#include "engine/measure/mesh_check.h"
 #include "engine/measure/mesh_input.h"
 #include "engine/start/mesh_import.h"
 
 using plc::Status;
+
+namespace plc {
+
+plc_measures record_of(const SurfaceMeasures& m) {
+  return {
+      sizeof(plc_measures), m.vertices, m.faces, m.components, m.euler, m.genus, m.area, m.volume};
+}
+
+plc_check record_of(const MeshCheck& c) {
+  plc_check out{};
+  out.struct_size = sizeof out;
+  out.measures = record_of(c.measures);
+  out.valid = c.valid;
+  out.closed = c.closed;
+  out.manifold = c.manifold;
+  out.oriented = c.oriented;
+  out.outward = c.outward;
+  out.border_edges = c.border_edges;
+  out.non_manifold_edges = c.non_manifold_edges;
+  out.non_manifold_vertices = c.non_manifold_vertices;
+  out.inconsistent_edges = c.inconsistent_edges;
+  out.wrongly_oriented_components = c.wrongly_oriented_components;
+  out.degenerate_faces = c.degenerate_faces;
+  out.duplicate_points = c.duplicate_points;
+  out.isolated_vertices = c.isolated_vertices;
+  out.self_intersections = c.self_intersections;
+  std::copy(c.first_intersection, c.first_intersection + 2, out.first_intersection);
+  out.edge_min = c.edge_min;
+  out.edge_mean = c.edge_mean;
+  out.edge_max = c.edge_max;
+  out.min_angle = c.min_angle;
+  out.max_angle = c.max_angle;
+  out.valence_min = c.valence_min;
+  out.valence_max = c.valence_max;
+  return out;
+}
+
+}  // namespace plc
 
 extern "C" {
 
@@ -15,9 +54,9 @@ plc_status plc_check_mesh(plc_context* context, const double* xyz, int64_t verte
                           const uint32_t* abc, int64_t face_count, plc_check* check) {
   return plc::guarded(context, [&]() -> Status {
     if (Status s = plc::check_output(check, "check"); !s.ok()) return s;
-    plc_check out{};
-    Status s = plc::check_mesh(xyz, vertex_count, abc, face_count, context->host->schedule, out);
-    if (s.ok()) plc::give_struct(out, check);
+    plc::MeshCheck found;
+    Status s = plc::check_mesh(xyz, vertex_count, abc, face_count, context->host->schedule, found);
+    if (s.ok()) plc::give_struct(plc::record_of(found), check);
     return s;
   });
 }

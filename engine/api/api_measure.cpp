@@ -10,6 +10,29 @@
 #include "engine/measure/moments.h"
 #include "engine/measure/surface_distance.h"
 
+namespace {
+
+plc_component_measures record_of(const plc::ComponentShape& c) {
+  plc_component_measures out{};
+  out.struct_size = sizeof out;
+  out.first_face = c.first_face;
+  out.vertices = c.vertices;
+  out.faces = c.faces;
+  out.euler = c.euler;
+  out.genus = c.genus;
+  out.area = c.area;
+  out.volume = c.volume;
+  std::copy(std::begin(c.low), std::end(c.low), out.low);
+  std::copy(std::begin(c.high), std::end(c.high), out.high);
+  std::copy(std::begin(c.centroid), std::end(c.centroid), out.centroid);
+  std::copy(std::begin(c.moments), std::end(c.moments), out.moments);
+  std::copy(std::begin(c.principal_moments), std::end(c.principal_moments), out.principal_moments);
+  std::copy(std::begin(c.principal_axes), std::end(c.principal_axes), out.principal_axes);
+  return out;
+}
+
+}  // namespace
+
 extern "C" {
 
 plc_status plc_mesh_component_measures(plc_context* context, const double* xyz,
@@ -31,9 +54,10 @@ plc_status plc_mesh_component_measures(plc_context* context, const double* xyz,
     const plc::ShapeMeasures shape =
         plc::shape_measures(xyz, static_cast<size_t>(vertex_count), abc,
                             static_cast<size_t>(face_count), context->host->schedule);
-    if (whole != nullptr) plc::give_struct(shape.whole, whole);
+    if (whole != nullptr) plc::give_struct(record_of(shape.whole), whole);
     *count = static_cast<int64_t>(shape.components.size());
-    std::copy_n(shape.components.begin(), std::min(capacity, *count), components);
+    std::transform(shape.components.begin(), shape.components.begin() + std::min(capacity, *count),
+                   components, record_of);
     return {};
   });
 }
@@ -109,12 +133,13 @@ plc_status plc_mesh_distance(plc_context* context, const double* xyz, int64_t ve
     if (other_face_count == 0) {
       return {plc::ErrorCode::kInvalidData, "the other mesh: has no face"};
     }
-    const plc_distances distances = plc::surface_distances(
+    const plc::SurfaceDistances d = plc::surface_distances(
         {xyz, static_cast<size_t>(vertex_count), abc, static_cast<size_t>(face_count)},
         {other_xyz, static_cast<size_t>(other_vertex_count), other_abc,
          static_cast<size_t>(other_face_count)},
         context->host->schedule, distance);
-    if (summary != nullptr) plc::give_struct(distances, summary);
+    const plc_distances out{sizeof out, d.mean, d.rms, d.max, d.vertex_mean, d.vertex_max};
+    if (summary != nullptr) plc::give_struct(out, summary);
     return {};
   });
 }

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/api/api_check.h"
 #include "engine/base/double3.h"
 #include "engine/measure/curvature.h"
-#include "engine/measure/measures.h"
-#include "engine/measure/mesh_check.h"
 #include "engine/mesh/state_hash.h"
 #include "engine/transform/edge.h"
 #include "pyramid/memory.h"
@@ -298,9 +297,10 @@ plc_status plc_surface_measure(plc_context* context, const plc_surface* surface,
     if (Status s = plc::check_surface(surface, space); !s.ok()) return s;
     if (Status s = plc::check_output(measures, "measures"); !s.ok()) return s;
     const plc::PlainMesh mesh = plc::plain_mesh(*surface, space);
-    plc::give_struct(plc::surface_measures(mesh.xyz.data(), mesh.vertices, mesh.abc.data(),
-                                           mesh.faces, context->host->schedule),
-                     measures);
+    plc::give_struct(
+        plc::record_of(plc::surface_measures(mesh.xyz.data(), mesh.vertices, mesh.abc.data(),
+                                             mesh.faces, context->host->schedule)),
+        measures);
     return {};
   });
 }
@@ -310,11 +310,11 @@ plc_status plc_surface_check(plc_context* context, const plc_surface* surface, p
     if (Status s = plc::check_surface(surface, PLC_SPACE_LPS); !s.ok()) return s;
     if (Status s = plc::check_output(check, "check"); !s.ok()) return s;
     const plc::PlainMesh mesh = plc::plain_mesh(*surface, PLC_SPACE_LPS);
-    plc_check out{};
+    plc::MeshCheck found;
     Status s =
         plc::check_mesh(mesh.xyz.data(), static_cast<int64_t>(mesh.vertices), mesh.abc.data(),
-                        static_cast<int64_t>(mesh.faces), context->host->schedule, out);
-    if (s.ok()) plc::give_struct(out, check);
+                        static_cast<int64_t>(mesh.faces), context->host->schedule, found);
+    if (s.ok()) plc::give_struct(plc::record_of(found), check);
     return s;
   });
 }

@@ -66,10 +66,9 @@ Vector<ComponentMeasures> component_measures(const Real* xyz, size_t vertex_coun
                             executor);
 }
 
-plc_measures total_measures(size_t vertex_count, const MeshTopology& topology,
-                            const Vector<ComponentMeasures>& components) {
-  plc_measures m{};
-  m.struct_size = sizeof(plc_measures);
+SurfaceMeasures total_measures(size_t vertex_count, const MeshTopology& topology,
+                               const Vector<ComponentMeasures>& components) {
+  SurfaceMeasures m;
   m.vertices = static_cast<int64_t>(vertex_count);
   m.faces = static_cast<int64_t>(topology.component.size());
   m.components = static_cast<int64_t>(components.size());
@@ -83,8 +82,8 @@ plc_measures total_measures(size_t vertex_count, const MeshTopology& topology,
 }
 
 template <typename Real>
-plc_measures surface_measures(const Real* xyz, size_t vertex_count, const uint32_t* abc,
-                              size_t face_count, const Executor& executor) {
+SurfaceMeasures surface_measures(const Real* xyz, size_t vertex_count, const uint32_t* abc,
+                                 size_t face_count, const Executor& executor) {
   const EdgeTable edges(abc, face_count, vertex_count, executor);
   const MeshTopology topology = mesh_topology(abc, face_count, vertex_count, edges);
   return total_measures(vertex_count, topology, component_measures(xyz, abc, topology, executor));
@@ -95,8 +94,8 @@ plc_measures surface_measures(const Real* xyz, size_t vertex_count, const uint32
                                                         const MeshTopology&, const Executor&); \
   template Vector<ComponentMeasures> component_measures(const Real*, size_t, const uint32_t*,  \
                                                         size_t, const Executor&);              \
-  template plc_measures surface_measures(const Real*, size_t, const uint32_t*, size_t,         \
-                                         const Executor&);
+  template SurfaceMeasures surface_measures(const Real*, size_t, const uint32_t*, size_t,      \
+                                            const Executor&);
 PLC_INSTANTIATE(float)
 PLC_INSTANTIATE(double)
 #undef PLC_INSTANTIATE

@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "engine/measure/mesh_topology.h"
-#include "engine/pellicle.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
 
@@ -19,6 +18,12 @@ struct ComponentMeasures {
   int64_t genus;     // -1 unless closed and consistently oriented
   double area;
   double volume;  // signed: > 0 when faces are outward; meaningless unless closed
+};
+
+// Of all components together.
+struct SurfaceMeasures {
+  int64_t vertices = 0, faces = 0, components = 0, euler = 0, genus = 0;
+  double area = 0, volume = 0;
 };
 
 // xyz: three finite values per vertex; abc: three indices below vertex_count per face; at most
@@ -38,10 +43,10 @@ Vector<ComponentMeasures> component_measures(const Real* xyz, size_t vertex_coun
 
 // Of the whole: sums over the components in their order; genus -1 where one has none. vertices
 // counts isolated ones too, euler does not. An empty mesh has zeros everywhere.
-plc_measures total_measures(size_t vertex_count, const MeshTopology& topology,
-                            const Vector<ComponentMeasures>& components);
+SurfaceMeasures total_measures(size_t vertex_count, const MeshTopology& topology,
+                               const Vector<ComponentMeasures>& components);
 template <typename Real>
-plc_measures surface_measures(const Real* xyz, size_t vertex_count, const uint32_t* abc,
-                              size_t face_count, const Executor& executor);
+SurfaceMeasures surface_measures(const Real* xyz, size_t vertex_count, const uint32_t* abc,
+                                 size_t face_count, const Executor& executor);
 
 }  // namespace plc

@@ -9,7 +9,6 @@
 #include "engine/exact/face_tree.h"
 #include "engine/exact/self_intersection.h"
 #include "engine/exact/triangle_intersection.h"
-#include "engine/measure/measures.h"
 #include "engine/measure/mesh_input.h"
 #include "engine/measure/mesh_topology.h"
 #include "engine/measure/nesting.h"
@@ -29,7 +28,7 @@ double distance(const double* p, const double* q) {
 }
 
 void measure_edges(const double* xyz, size_t vertex_count, const EdgeTable& edges,
-                   int64_t edge_count, const Executor& executor, plc_check& check) {
+                   int64_t edge_count, const Executor& executor, MeshCheck& check) {
   struct Part {
     double low = std::numeric_limits<double>::infinity(), high = 0, sum = 0;
   };
@@ -72,7 +71,7 @@ double cotangent(const double* a, const double* b, const double* c) {
 }
 
 void measure_angles(const double* xyz, const uint32_t* abc, size_t face_count,
-                    const Executor& executor, plc_check& check) {
+                    const Executor& executor, MeshCheck& check) {
   struct Part {
     double low = std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
@@ -133,7 +132,7 @@ int64_t count_duplicates(const double* xyz, size_t vertex_count) {
   return duplicates;
 }
 
-void note_topology(const MeshTopology& t, plc_check& check) {
+void note_topology(const MeshTopology& t, MeshCheck& check) {
   const bool proper = t.repeated_vertex_faces == 0;
   check.closed = proper && t.border_edges == 0 && t.odd_edges == 0 ? 1 : 0;
   check.manifold = proper && t.non_manifold_edges == 0 && t.non_manifold_vertices == 0 ? 1 : 0;
@@ -148,7 +147,7 @@ void note_topology(const MeshTopology& t, plc_check& check) {
 }
 
 void find_intersections(const double* xyz, const uint32_t* abc, const FaceTree& tree,
-                        const Executor& executor, plc_check& check) {
+                        const Executor& executor, MeshCheck& check) {
   const Vector<FacePair> pairs =
       self_intersections(xyz, abc, tree, executor, static_cast<size_t>(kMaxIntersections));
   check.self_intersections = static_cast<int64_t>(pairs.size());
@@ -159,14 +158,13 @@ void find_intersections(const double* xyz, const uint32_t* abc, const FaceTree& 
 }  // namespace
 
 Status check_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
-                  const Executor& executor, plc_check& check) {
+                  const Executor& executor, MeshCheck& check) {
   Status status = check_mesh_input(xyz, vertex_count, abc, face_count, executor);
   if (!status.ok()) return status;
   const auto vertices = static_cast<size_t>(vertex_count);
   const auto faces = static_cast<size_t>(face_count);
 
-  plc_check c{};
-  c.struct_size = check.struct_size;
+  MeshCheck c;
   const EdgeTable edges(abc, faces, vertices, executor);
   const MeshTopology topology = mesh_topology(abc, faces, vertices, edges);
   note_topology(topology, c);

@@ -17,19 +17,31 @@
 #pragma once
 #include <cstdint>
 
-#include "engine/pellicle.h"
+#include "engine/measure/measures.h"
 #include "pyramid/executor.h"
 #include "pyramid/status.h"
 
 namespace plc {
 
-// plc_check::self_intersections stops counting here: more take longer than anyone waits for and say
+// self_intersections stops counting here: more take longer than anyone waits for and say
 // no more. first_intersection is then one of those counted.
 inline constexpr int64_t kMaxIntersections = 1000000;
 
-// Input and errors as check_mesh_input() has them; check is unchanged after an error. Otherwise all
-// of it but struct_size is written. The same bits for any executor.
+// The fields are those of plc_check.
+struct MeshCheck {
+  SurfaceMeasures measures;
+  int valid = 0, closed = 0, manifold = 0, oriented = 0, outward = 0;
+  int64_t border_edges = 0, non_manifold_edges = 0, non_manifold_vertices = 0;
+  int64_t inconsistent_edges = 0, wrongly_oriented_components = 0, degenerate_faces = 0;
+  int64_t duplicate_points = 0, isolated_vertices = 0;
+  int64_t self_intersections = 0, first_intersection[2] = {0, 0};
+  double edge_min = 0, edge_mean = 0, edge_max = 0, min_angle = 0, max_angle = 0;
+  int32_t valence_min = 0, valence_max = 0;
+};
+
+// Input and errors as check_mesh_input() has them; check is unchanged after an error. The same bits
+// for any executor.
 Status check_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
-                  const Executor& executor, plc_check& check);
+                  const Executor& executor, MeshCheck& check);
 
 }  // namespace plc

@@ -61,7 +61,7 @@ Moments shifted(const Moments& m, double volume, const std::array<double, 3>& d)
   return out;
 }
 
-void set_undefined(plc_component_measures& c) {
+void set_undefined(ComponentShape& c) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   std::fill(std::begin(c.centroid), std::end(c.centroid), kNan);
   std::fill(std::begin(c.moments), std::end(c.moments), kNan);
@@ -70,7 +70,7 @@ void set_undefined(plc_component_measures& c) {
 }
 
 // Central moments and axes; c.volume is set.
-void set_shape(const Moments& m, const double* reference, plc_component_measures& c) {
+void set_shape(const Moments& m, const double* reference, ComponentShape& c) {
   set_undefined(c);
   if (!(c.volume < 0 || c.volume > 0)) return;
   for (size_t k = 0; k < 3; ++k) c.centroid[k] = reference[k] + m.first[k] / c.volume;
@@ -109,14 +109,14 @@ Vector<Moments> component_moments(const double* xyz, const uint32_t* abc,
 }
 
 void set_boxes(const double* xyz, const uint32_t* abc, const MeshTopology& topology,
-               Vector<plc_component_measures>& by_number) {
+               Vector<ComponentShape>& by_number) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  for (plc_component_measures& c : by_number) {
+  for (ComponentShape& c : by_number) {
     std::fill(std::begin(c.low), std::end(c.low), kInfinity);
     std::fill(std::begin(c.high), std::end(c.high), -kInfinity);
   }
   for (size_t i = 0; i < 3 * topology.component.size(); ++i) {
-    plc_component_measures& c = by_number[topology.component[i / 3]];
+    ComponentShape& c = by_number[topology.component[i / 3]];
     for (size_t k = 0; k < 3; ++k) {
       const double x = xyz[3 * static_cast<size_t>(abc[i]) + k];
       c.low[k] = std::min(c.low[k], x);
@@ -128,7 +128,7 @@ void set_boxes(const double* xyz, const uint32_t* abc, const MeshTopology& topol
 // Sums over the components in their order, from a corner of the first.
 void set_whole(const double* xyz, const uint32_t* abc, const Vector<Moments>& moments,
                const Vector<ComponentMeasures>& order, ShapeMeasures& shape) {
-  plc_component_measures& whole = shape.whole;
+  ComponentShape& whole = shape.whole;
   if (order.empty()) {
     set_undefined(whole);
     return;
@@ -141,7 +141,7 @@ void set_whole(const double* xyz, const uint32_t* abc, const Vector<Moments>& mo
   std::copy_n(shape.components[0].high, 3, whole.high);
   Moments sum;
   for (size_t i = 0; i < order.size(); ++i) {
-    const plc_component_measures& c = shape.components[i];
+    const ComponentShape& c = shape.components[i];
     for (size_t k = 0; k < 3; ++k) {
       whole.low[k] = std::min(whole.low[k], c.low[k]);
       whole.high[k] = std::max(whole.high[k], c.high[k]);
@@ -162,13 +162,12 @@ ShapeMeasures shape_measures(const double* xyz, size_t vertex_count, const uint3
   const MeshTopology topology = mesh_topology(abc, face_count, vertex_count, edges);
   const Vector<ComponentMeasures> order = component_measures(xyz, abc, topology, executor);
   const Vector<Moments> moments = component_moments(xyz, abc, topology, executor);
-  Vector<plc_component_measures> by_number(topology.components.size());
+  Vector<ComponentShape> by_number(topology.components.size());
   set_boxes(xyz, abc, topology, by_number);
-  ShapeMeasures shape{};
+  ShapeMeasures shape;
   for (const ComponentMeasures& m : order) {
     const ComponentTopology& t = topology.components[m.component];
-    plc_component_measures c = by_number[m.component];
-    c.struct_size = sizeof c;
+    ComponentShape c = by_number[m.component];
     c.first_face = m.first_face;
     c.vertices = m.vertices;
     c.faces = m.faces;
@@ -180,8 +179,7 @@ ShapeMeasures shape_measures(const double* xyz, size_t vertex_count, const uint3
               xyz + 3 * static_cast<size_t>(abc[3 * static_cast<size_t>(m.first_face)]), c);
     shape.components.push_back(c);
   }
-  const plc_measures total = total_measures(vertex_count, topology, order);
-  shape.whole.struct_size = sizeof shape.whole;
+  const SurfaceMeasures total = total_measures(vertex_count, topology, order);
   shape.whole.vertices = total.vertices;
   shape.whole.faces = total.faces;
   shape.whole.euler = total.euler;

@@ -96,15 +96,15 @@ Sums surface_sums(const MeshArrays& mesh, const NearestFace& other, const double
 
 }  // namespace
 
-plc_distances surface_distances(const MeshArrays& mesh, const MeshArrays& other,
-                                const Executor& executor, double* distance) {
+SurfaceDistances surface_distances(const MeshArrays& mesh, const MeshArrays& other,
+                                   const Executor& executor, double* distance) {
   const NearestFace nearest(other, executor);
   Vector<double> at(mesh.vertex_count);
   run_blocks(executor, mesh.vertex_count, kBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t v = begin; v < end; ++v) at[v] = nearest.distance(mesh.xyz + 3 * v);
   });
   const Sums sums = surface_sums(mesh, nearest, at.data(), executor);
-  plc_distances d{sizeof(plc_distances), kNan, kNan, kNan, kNan, kNan};
+  SurfaceDistances d{kNan, kNan, kNan, kNan, kNan};
   if (mesh.vertex_count > 0) {
     d.vertex_mean =
         std::accumulate(at.begin(), at.end(), 0.0) / static_cast<double>(mesh.vertex_count);

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/pellicle.h"
 #include "pyramid/executor.h"
 
 namespace plc {
@@ -16,10 +15,16 @@ struct MeshArrays {
   size_t face_count;
 };
 
+// As plc_distances has them.
+struct SurfaceDistances {
+  double mean, rms, max;
+  double vertex_mean, vertex_max;
+};
+
 // plc_mesh_distance says what is computed. `other` has a face; distance: one value per vertex of
 // mesh, or NULL. Five queries per face of mesh, of which each takes the logarithm of the other's
 // faces where the meshes are near each other. The same bits for any executor.
-plc_distances surface_distances(const MeshArrays& mesh, const MeshArrays& other,
-                                const Executor& executor, double* distance);
+SurfaceDistances surface_distances(const MeshArrays& mesh, const MeshArrays& other,
+                                   const Executor& executor, double* distance);
 
 }  // namespace plc

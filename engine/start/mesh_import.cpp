@@ -25,7 +25,7 @@ Status refused(const std::string& message) {
   return {ErrorCode::kInvalidData, message};
 }
 
-// Says what is wrong with a mesh that plc_check calls invalid, the root of the trouble first.
+// Says what is wrong with a mesh that check_mesh() calls invalid, the root of the trouble first.
 class Complaint {
  public:
   Complaint(const double* xyz, const double* told, size_t vertex_count, const uint32_t* abc,
@@ -37,7 +37,7 @@ class Complaint {
         face_count_(face_count),
         executor_(executor) {}
 
-  std::string of(const plc_check& check) const {
+  std::string of(const MeshCheck& check) const {
     if (face_count_ == 0) return "no faces";
     if (const auto f = first_face_with_repeated_vertex()) {
       return "degenerate: a face repeats a vertex: " + face(*f);
@@ -130,7 +130,7 @@ class Complaint {
     return "degenerate: " + std::to_string(count) + " faces of zero area, the first " + face(f);
   }
 
-  std::string meeting(const plc_check& check) const {
+  std::string meeting(const MeshCheck& check) const {
     const auto f = static_cast<size_t>(check.first_intersection[0]);
     return "self-intersecting: " +
            std::string(check.self_intersections >= kMaxIntersections ? "at least " : "") +
@@ -170,7 +170,7 @@ class Complaint {
 
 Status check_input(const double* xyz, const double* told, int64_t vertex_count, const uint32_t* abc,
                    int64_t face_count, const char* prefix, const Executor& executor) {
-  plc_check check{};
+  MeshCheck check;
   if (Status s = check_mesh(xyz, vertex_count, abc, face_count, executor, check); !s.ok()) {
     return {s.code(), "mesh: " + s.message()};
   }

@@ -143,6 +143,7 @@ TEST_CASE("the surface is valid by the check of any mesh", "[pellicle]") {
                            abc.data(), static_cast<int64_t>(abc.size() / 3), &check) == PLC_OK);
     CHECK(check.valid == 1);
     CHECK(check.outward == 1);
+    CHECK(check.measures.struct_size == sizeof(plc_measures));
     CHECK(check.measures.volume > 0);
   }
 }

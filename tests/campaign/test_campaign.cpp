@@ -106,14 +106,14 @@ Leftovers leftovers(const Mesh& mesh) {
   return found;
 }
 
-// What plc_check_mesh says against the mesh.
+// What check_mesh() says against the mesh.
 std::string invalid(const Mesh& mesh) {
   std::vector<double> xyz;
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     for (const float c : {mesh.packed[v].x, mesh.packed[v].y, mesh.packed[v].z}) xyz.push_back(c);
   }
   const plc::Vector<uint32_t> abc = mesh.faces();
-  plc_check check{};
+  plc::MeshCheck check;
   const plc::Status status =
       plc::check_mesh(xyz.data(), mesh.slots(), abc.data(), static_cast<int64_t>(abc.size() / 3),
                       samples::kSerial, check);

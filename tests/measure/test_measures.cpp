@@ -18,7 +18,7 @@ class ReverseExecutor final : public plc::Executor {
   }
 };
 
-plc_measures measure(const Soup& m) {
+plc::SurfaceMeasures measure(const Soup& m) {
   return plc::surface_measures(m.xyz.data(), m.vertex_count(), m.abc.data(), m.face_count(),
                                plc::SerialExecutor());
 }
@@ -49,7 +49,7 @@ Soup double_torus() {
 TEST_CASE("area and volume of finer spheres converge with order two", "[measures]") {
   double area_error[3], volume_error[3];
   for (int i = 0; i < 3; ++i) {
-    const plc_measures m = measure(samples::sphere(3 + i));
+    const plc::SurfaceMeasures m = measure(samples::sphere(3 + i));
     CHECK(m.euler == 2);
     CHECK(m.genus == 0);
     CHECK(m.components == 1);
@@ -64,7 +64,7 @@ TEST_CASE("area and volume of finer spheres converge with order two", "[measures
 }
 
 TEST_CASE("the cube has area 6 and volume 1, turned inside out volume -1", "[measures]") {
-  const plc_measures m = measure(samples::cube());
+  const plc::SurfaceMeasures m = measure(samples::cube());
   CHECK(m.area == Approx(6).epsilon(1e-14));
   CHECK(m.volume == Approx(1).epsilon(1e-14));
   CHECK(m.vertices == 8);
@@ -73,12 +73,12 @@ TEST_CASE("the cube has area 6 and volume 1, turned inside out volume -1", "[mea
 }
 
 TEST_CASE("a torus has genus 1, a double torus genus 2", "[measures]") {
-  const plc_measures one = measure(samples::torus(60, 40, 2, 0.7));
+  const plc::SurfaceMeasures one = measure(samples::torus(60, 40, 2, 0.7));
   CHECK(one.euler == 0);
   CHECK(one.genus == 1);
   CHECK(one.area == Approx(4 * kPi * kPi * 2 * 0.7).epsilon(0.01));
   CHECK(one.volume == Approx(2 * kPi * kPi * 2 * 0.49).epsilon(0.01));
-  const plc_measures two = measure(double_torus());
+  const plc::SurfaceMeasures two = measure(double_torus());
   CHECK(two.components == 1);
   CHECK(two.euler == -2);
   CHECK(two.genus == 2);
@@ -98,7 +98,7 @@ TEST_CASE("components come with their own measures, the largest area first", "[m
   CHECK(parts[1].component == 0);
   CHECK(parts[2].area == Approx(6).epsilon(1e-13));
   CHECK(parts[2].volume == Approx(-1).epsilon(1e-13));
-  const plc_measures all = measure(m);
+  const plc::SurfaceMeasures all = measure(m);
   CHECK(all.components == 3);
   CHECK(all.genus == 1);
   CHECK(all.euler == 4);
@@ -120,7 +120,7 @@ TEST_CASE("two tetrahedra with a common vertex are two components without handle
   Soup m;
   m.xyz = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, -1, 0, 0, 0, -1, 0, 0, 0, -1};
   m.abc = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3, 0, 4, 5, 0, 6, 4, 0, 5, 6, 4, 6, 5};
-  const plc_measures measures = measure(m);
+  const plc::SurfaceMeasures measures = measure(m);
   CHECK(measures.components == 2);
   CHECK(measures.euler == 3);
   CHECK(measures.genus == 0);
@@ -145,24 +145,24 @@ TEST_CASE("float and double positions of the same values measure the same", "[me
     narrow.push_back(static_cast<float>(x));
     x = narrow.back();
   }
-  const plc_measures a = measure(m);
-  const plc_measures b = plc::surface_measures(narrow.data(), m.vertex_count(), m.abc.data(),
-                                               m.face_count(), plc::SerialExecutor());
+  const plc::SurfaceMeasures a = measure(m);
+  const plc::SurfaceMeasures b = plc::surface_measures(
+      narrow.data(), m.vertex_count(), m.abc.data(), m.face_count(), plc::SerialExecutor());
   CHECK(a.area == b.area);
   CHECK(a.volume == b.volume);
 }
 
 TEST_CASE("measures are the same bits for any order of tasks", "[measures]") {
   const Soup m = samples::torus(150, 70, 2, 0.6);
-  const plc_measures a = measure(m);
-  const plc_measures b = plc::surface_measures(m.xyz.data(), m.vertex_count(), m.abc.data(),
-                                               m.face_count(), ReverseExecutor());
+  const plc::SurfaceMeasures a = measure(m);
+  const plc::SurfaceMeasures b = plc::surface_measures(m.xyz.data(), m.vertex_count(), m.abc.data(),
+                                                       m.face_count(), ReverseExecutor());
   CHECK(a.area == b.area);
   CHECK(a.volume == b.volume);
 }
 
 TEST_CASE("an empty mesh measures nothing", "[measures]") {
-  const plc_measures m = measure(Soup());
+  const plc::SurfaceMeasures m = measure(Soup());
   CHECK(m.components == 0);
   CHECK(m.genus == 0);
   CHECK(m.area == 0);

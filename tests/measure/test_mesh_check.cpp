@@ -18,20 +18,17 @@ class ReverseExecutor final : public plc::Executor {
   }
 };
 
-plc_check check(const Soup& m, const plc::Executor& executor = plc::SerialExecutor()) {
-  plc_check c{};
-  c.struct_size = sizeof c;
+plc::MeshCheck check(const Soup& m, const plc::Executor& executor = plc::SerialExecutor()) {
+  plc::MeshCheck c;
   const plc::Status status =
       plc::check_mesh(m.xyz.data(), static_cast<int64_t>(m.vertex_count()), m.abc.data(),
                       static_cast<int64_t>(m.face_count()), executor, c);
   REQUIRE(status.ok());
-  CHECK(c.struct_size == sizeof c);
-  CHECK(c.measures.struct_size == sizeof(plc_measures));
   return c;
 }
 
 std::string complaint(const Soup& m) {
-  plc_check c{};
+  plc::MeshCheck c;
   const plc::Status status =
       plc::check_mesh(m.xyz.data(), static_cast<int64_t>(m.vertex_count()), m.abc.data(),
                       static_cast<int64_t>(m.face_count()), plc::SerialExecutor(), c);
@@ -40,7 +37,7 @@ std::string complaint(const Soup& m) {
 }
 
 // closed, manifold, oriented, outward in this order.
-std::string facts(const plc_check& c) {
+std::string facts(const plc::MeshCheck& c) {
   std::string text;
   for (const int fact : {c.closed, c.manifold, c.oriented, c.outward}) {
     text += fact < 0 ? '-' : (fact == 0 ? '0' : '1');
@@ -61,7 +58,7 @@ TEST_CASE("simple closed surfaces are valid", "[mesh_check]") {
   for (const Soup& m :
        {tetrahedron(), samples::cube(), samples::sphere(3), samples::torus(24, 12, 2, 0.7),
         samples::moved(samples::cube(), 0.1, 7, 3)}) {
-    const plc_check c = check(m);
+    const plc::MeshCheck c = check(m);
     CHECK(c.valid == 1);
     CHECK(facts(c) == "1111");
     CHECK(c.self_intersections == 0);
@@ -72,7 +69,7 @@ TEST_CASE("simple closed surfaces are valid", "[mesh_check]") {
 }
 
 TEST_CASE("edges, angles and valences of the cube are its own", "[mesh_check]") {
-  const plc_check c = check(samples::cube());
+  const plc::MeshCheck c = check(samples::cube());
   CHECK(c.edge_min == 1);
   CHECK(c.edge_max == Approx(std::sqrt(2.0)));
   CHECK(c.edge_mean == Approx((12 + 6 * std::sqrt(2.0)) / 18));
@@ -86,7 +83,7 @@ TEST_CASE("edges, angles and valences of the cube are its own", "[mesh_check]") 
 TEST_CASE("a missing face leaves a border", "[mesh_check]") {
   Soup m = samples::sphere(2);
   m.abc.resize(m.abc.size() - 3);
-  const plc_check c = check(m);
+  const plc::MeshCheck c = check(m);
   CHECK(c.valid == 0);
   CHECK(facts(c) == "011-");
   CHECK(c.border_edges == 3);
@@ -97,7 +94,7 @@ TEST_CASE("a face more than the surface makes edges of three faces", "[mesh_chec
   Soup m = tetrahedron();
   const uint32_t v = m.vertex(2, 2, 2);
   m.face(1, 2, v);
-  const plc_check c = check(m);
+  const plc::MeshCheck c = check(m);
   CHECK(facts(c) == "000-");
   CHECK(c.non_manifold_edges == 1);
   CHECK(c.border_edges == 2);
@@ -109,7 +106,7 @@ TEST_CASE("two tetrahedra with a common edge are closed but not manifold", "[mes
   Soup m;
   m.xyz = {0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0};
   m.abc = {0, 3, 2, 0, 2, 1, 2, 3, 1, 3, 0, 1, 0, 5, 4, 0, 4, 1, 4, 5, 1, 5, 0, 1};
-  const plc_check c = check(m);
+  const plc::MeshCheck c = check(m);
   CHECK(facts(c) == "100-");
   CHECK(c.non_manifold_edges == 1);
   CHECK(c.non_manifold_vertices == 2);
@@ -123,7 +120,7 @@ TEST_CASE("two tetrahedra with a common vertex differ from a valid mesh in that 
   Soup m = tetrahedron();
   m.xyz.insert(m.xyz.end(), {-1, 0, 0, 0, -1, 0, 0, 0, -1});
   m.abc.insert(m.abc.end(), {0, 4, 5, 0, 6, 4, 0, 5, 6, 4, 6, 5});
-  const plc_check c = check(m);
+  const plc::MeshCheck c = check(m);
   CHECK(facts(c) == "1011");
   CHECK(c.non_manifold_vertices == 1);
   CHECK(c.non_manifold_edges == 0);
@@ -135,7 +132,7 @@ TEST_CASE("two tetrahedra with a common vertex differ from a valid mesh in that 
 TEST_CASE("a face turned over is inconsistent with its neighbours", "[mesh_check]") {
   Soup m = samples::sphere(2);
   std::swap(m.abc[0], m.abc[1]);
-  const plc_check c = check(m);
+  const plc::MeshCheck c = check(m);
   CHECK(facts(c) == "110-");
   CHECK(c.inconsistent_edges == 3);
   CHECK(c.self_intersections == 0);
@@ -143,7 +140,7 @@ TEST_CASE("a face turned over is inconsistent with its neighbours", "[mesh_check
 }
 
 TEST_CASE("a surface turned inside out is wrongly oriented", "[mesh_check]") {
-  const plc_check c = check(samples::flipped(samples::torus(20, 10, 2, 0.7)));
+  const plc::MeshCheck c = check(samples::flipped(samples::torus(20, 10, 2, 0.7)));
   CHECK(facts(c) == "1110");
   CHECK(c.wrongly_oriented_components == 1);
   CHECK(c.measures.volume < 0);
@@ -172,7 +169,7 @@ TEST_CASE("the wall of a cavity must face inward, and what is in the cavity outw
 TEST_CASE("spheres that cross intersect themselves and are right in all else", "[mesh_check]") {
   Soup m = samples::sphere(3);
   m.append(samples::moved(samples::sphere(3), 1.7, 0.1, 0.05));
-  const plc_check c = check(m);
+  const plc::MeshCheck c = check(m);
   CHECK(c.closed == 1);
   CHECK(c.manifold == 1);
   CHECK(c.oriented == 1);
@@ -187,7 +184,7 @@ TEST_CASE("a flat face is degenerate, and its neighbours touch", "[mesh_check]")
   Soup m = tetrahedron();
   const uint32_t v = m.vertex(0.5, 0, 0);
   m.abc = {0, 2, v, v, 2, 1, 0, v, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
-  const plc_check c = check(m);
+  const plc::MeshCheck c = check(m);
   CHECK(facts(c) == "1111");
   CHECK(c.degenerate_faces == 1);
   CHECK(c.self_intersections == 2);
@@ -200,7 +197,7 @@ TEST_CASE("a face that repeats a vertex is degenerate, not closed and not manifo
           "[mesh_check]") {
   Soup m = samples::sphere(1);
   m.face(0, 4, 4);
-  const plc_check c = check(m);
+  const plc::MeshCheck c = check(m);
   CHECK(facts(c) == "000-");
   CHECK(c.degenerate_faces == 1);
   CHECK(c.border_edges == 0);
@@ -214,7 +211,7 @@ TEST_CASE("duplicate and isolated points are counted and do no harm", "[mesh_che
   m.vertex(1, 0, -0.0);
   m.vertex(1, 0, 0);
   m.vertex(7, 7, 7);
-  const plc_check c = check(m);
+  const plc::MeshCheck c = check(m);
   CHECK(c.duplicate_points == 2);
   CHECK(c.isolated_vertices == 3);
   CHECK(c.measures.euler == 2);
@@ -225,7 +222,7 @@ TEST_CASE("duplicate and isolated points are counted and do no harm", "[mesh_che
 TEST_CASE("a doubled surface has duplicate points and intersects itself", "[mesh_check]") {
   Soup m = samples::octahedron();
   m.append(samples::octahedron());
-  const plc_check c = check(m);
+  const plc::MeshCheck c = check(m);
   CHECK(c.duplicate_points == 6);
   CHECK(c.self_intersections >= 8);
   CHECK(c.valid == 0);
@@ -235,7 +232,7 @@ TEST_CASE("an empty mesh has no fault but is not valid", "[mesh_check]") {
   for (const bool with_vertices : {false, true}) {
     Soup m;
     if (with_vertices) m.vertex(1, 2, 3);
-    const plc_check c = check(m);
+    const plc::MeshCheck c = check(m);
     CHECK(facts(c) == "111-");
     CHECK(c.valid == 0);
     CHECK(c.measures.faces == 0);
@@ -264,7 +261,7 @@ TEST_CASE("impossible indices and values are refused by name", "[mesh_check]") {
 }
 
 TEST_CASE("impossible counts are refused and leave the result alone", "[mesh_check]") {
-  plc_check c{};
+  plc::MeshCheck c;
   c.valid = 77;
   const plc::SerialExecutor serial;
   const double xyz[3] = {0, 0, 0};
@@ -281,7 +278,7 @@ TEST_CASE("a check is the same bits for any order of tasks", "[mesh_check]") {
   Soup m = samples::torus(120, 60, 2, 0.7);
   m.append(samples::moved(samples::sphere(4), 1.8, 0.3, 0.2));
   m.append(samples::moved(samples::sphere(2), 9, 0, 0));
-  const plc_check a = check(m), b = check(m, ReverseExecutor());
+  const plc::MeshCheck a = check(m), b = check(m, ReverseExecutor());
   CHECK(a.measures.area == b.measures.area);
   CHECK(a.measures.volume == b.measures.volume);
   CHECK(a.measures.components == 3);
@@ -298,7 +295,7 @@ TEST_CASE("a check is the same bits for any order of tasks", "[mesh_check]") {
 
 TEST_CASE("tiny and huge meshes are judged like others", "[mesh_check]") {
   for (const double size : {1e-60, 1e60}) {
-    const plc_check c = check(samples::moved(samples::octahedron(), 0, 0, 0, size));
+    const plc::MeshCheck c = check(samples::moved(samples::octahedron(), 0, 0, 0, size));
     CHECK(c.valid == 1);
     CHECK(c.measures.volume / size / size / size == Approx(4.0 / 3));
   }

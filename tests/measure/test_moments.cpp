@@ -22,7 +22,7 @@ const double kOffset[3] = {0.3, -0.2, 0.7};
 // Errors of area, volume, centroid, moments (against the given diagonal) at each refinement.
 struct Errors {
   std::vector<double> area, volume, centroid, moments;
-  void add(const plc_component_measures& c, double true_area, double true_volume,
+  void add(const plc::ComponentShape& c, double true_area, double true_volume,
            const double (&diagonal)[3]) {
     area.push_back(std::abs(c.area / true_area - 1));
     volume.push_back(std::abs(c.volume / true_volume - 1));
@@ -129,13 +129,13 @@ TEST_CASE("a box has its moments exactly, and its axes are those it was turned t
     box.xyz[i + 1] *= 5;
     box.xyz[i + 2] *= 3;
   }
-  const plc_component_measures plain = shape(box).whole;
+  const plc::ComponentShape plain = shape(box).whole;
   CHECK(plain.volume == Approx(30).epsilon(1e-14));
   CHECK(plain.moments[0] == Approx(30 * 4.0 / 12).epsilon(1e-14));
   CHECK(plain.moments[1] == Approx(30 * 25.0 / 12).epsilon(1e-14));
   CHECK(plain.moments[2] == Approx(30 * 9.0 / 12).epsilon(1e-14));
   CHECK(plain.centroid[1] == Approx(2.5).epsilon(1e-14));
-  const plc_component_measures turned = shape(samples::turned(box)).whole;
+  const plc::ComponentShape turned = shape(samples::turned(box)).whole;
   const auto r = samples::turn();
   const size_t column[3] = {1, 2, 0};  // 5, 3, 2
   for (size_t i = 0; i < 3; ++i) {
@@ -152,7 +152,7 @@ TEST_CASE("moments far from the origin lose no digits", "[moments]") {
   for (size_t i = 0; i < far.xyz.size(); ++i) far.xyz[i] += i % 3 == 0 ? 1048576 : -524288;
   Soup back = far;  // rounded as the far one is
   for (size_t i = 0; i < far.xyz.size(); ++i) back.xyz[i] -= i % 3 == 0 ? 1048576 : -524288;
-  const plc_component_measures a = shape(back).whole, b = shape(far).whole;
+  const plc::ComponentShape a = shape(back).whole, b = shape(far).whole;
   for (int k = 0; k < 6; ++k) CHECK(b.moments[k] == a.moments[k]);
   CHECK(b.centroid[0] == Approx(a.centroid[0] + 1048576).epsilon(1e-15));
 }
@@ -162,7 +162,7 @@ TEST_CASE("the whole of a shell and its cavity is the difference of two balls", 
   m.append(samples::sphere(4));
   const ShapeMeasures s = shape(m);
   REQUIRE(s.components.size() == 2);
-  const plc_component_measures &outer = s.components[0], &inner = s.components[1];
+  const plc::ComponentShape &outer = s.components[0], &inner = s.components[1];
   CHECK(outer.first_face == 2048);
   CHECK(inner.first_face == 0);
   CHECK(inner.volume < 0);
@@ -182,7 +182,7 @@ TEST_CASE("the whole of a shell and its cavity is the difference of two balls", 
 TEST_CASE("what encloses no volume has no centroid, but an area and a box", "[moments]") {
   Soup open = samples::sphere(2);
   open.abc.resize(open.abc.size() - 3);
-  const plc_component_measures c = shape(open).whole;
+  const plc::ComponentShape c = shape(open).whole;
   CHECK(std::isnan(c.volume));
   CHECK(std::isnan(c.centroid[0]));
   CHECK(std::isnan(c.moments[5]));

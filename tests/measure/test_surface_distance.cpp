@@ -10,7 +10,7 @@ namespace {
 using samples::Soup;
 
 struct Result {
-  plc_distances summary;
+  plc::SurfaceDistances summary;
   std::vector<double> at_vertices;
 };
 

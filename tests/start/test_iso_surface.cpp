@@ -32,7 +32,7 @@ void extract(Mesh& mesh, const Volume& v, float iso, bool inside_above = true) {
 }
 
 // Everything that a surface must be, and its measures.
-plc_check checked(const Mesh& mesh) {
+plc::MeshCheck checked(const Mesh& mesh) {
   CHECK(plc::broken_invariant(mesh) == "");
   std::vector<double> xyz;
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
@@ -40,7 +40,7 @@ plc_check checked(const Mesh& mesh) {
     xyz.insert(xyz.end(), {p.x, p.y, p.z});
   }
   const plc::Vector<uint32_t> abc = mesh.faces();
-  plc_check check{};
+  plc::MeshCheck check;
   REQUIRE(plc::check_mesh(xyz.data(), static_cast<int64_t>(mesh.slots()), abc.data(),
                           static_cast<int64_t>(abc.size() / 3), samples::kSerial, check)
               .ok());
@@ -61,7 +61,7 @@ TEST_CASE("the iso-surface of a ball is a sphere of its volume", "[iso_surface]"
   const Volume v = samples::sphere_potential(samples::empty_volume({40, 40, 40}), 0.3);
   Mesh mesh;
   extract(mesh, v, 0.5F);
-  const plc_check check = checked(mesh);
+  const plc::MeshCheck check = checked(mesh);
   CHECK(check.measures.components == 1);
   CHECK(check.measures.genus == 0);
   CHECK(check.measures.volume == Approx(4 * kPi / 3 * 12 * 12 * 12).epsilon(0.01));
@@ -72,7 +72,7 @@ TEST_CASE("the iso-surface of a chain is its two tori", "[iso_surface]") {
   const Volume v = samples::chain_potential(samples::empty_volume({64, 64, 64}));
   Mesh mesh;
   extract(mesh, v, 0.5F);
-  const plc_check check = checked(mesh);
+  const plc::MeshCheck check = checked(mesh);
   CHECK(check.measures.components == 2);
   CHECK(check.measures.genus == 2);
   CHECK(check.measures.volume == Approx(2 * 2 * kPi * 14 * kPi * 3.57 * 3.57).epsilon(0.02));
@@ -83,12 +83,12 @@ TEST_CASE("cavities get walls that face inward, and dark objects are found as we
   const Volume v = samples::shell(samples::empty_volume({40, 40, 40}));
   Mesh mesh;
   extract(mesh, v, 0.5F);
-  const plc_check bright = checked(mesh);
+  const plc::MeshCheck bright = checked(mesh);
   CHECK(bright.measures.components == 2);
   CHECK(bright.measures.genus == 0);
   // Outside of the shell is dark: one box with a shell-shaped cavity, and the core.
   extract(mesh, v, 0.5F, false);
-  const plc_check dark = checked(mesh);
+  const plc::MeshCheck dark = checked(mesh);
   CHECK(dark.measures.components == 3);
   CHECK(dark.measures.volume == Approx(40 * 40 * 40 - bright.measures.volume).epsilon(0.01));
 }
@@ -101,7 +101,7 @@ TEST_CASE("noise of every density has a valid iso-surface", "[iso_surface]") {
       for (const bool above : {false, true}) {
         Mesh mesh;
         extract(mesh, v, iso, above);
-        const plc_check check = checked(mesh);
+        const plc::MeshCheck check = checked(mesh);
         CHECK(check.edge_min > 0.05);
         CHECK(check.edge_max < 2);
       }
@@ -133,7 +133,7 @@ TEST_CASE("values equal to iso are inside and do not make faces degenerate", "[i
   for (const bool above : {true, false}) {
     Mesh mesh;
     extract(mesh, v, above ? 0.5F : 0.0F, above);
-    const plc_check check = checked(mesh);
+    const plc::MeshCheck check = checked(mesh);
     CHECK(check.edge_min > 0.05);
     CHECK(check.measures.volume > 0);
   }
@@ -142,7 +142,7 @@ TEST_CASE("values equal to iso are inside and do not make faces degenerate", "[i
 TEST_CASE("what the border cuts is closed half a voxel beyond it", "[iso_surface]") {
   Mesh mesh;
   extract(mesh, constant({5, 6, 7}, 1), 0.5F);
-  const plc_check check = checked(mesh);
+  const plc::MeshCheck check = checked(mesh);
   CHECK(check.measures.components == 1);
   CHECK(check.measures.genus == 0);
   CHECK(check.measures.volume == Approx(5 * 6 * 7).epsilon(0.12));
