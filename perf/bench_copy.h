@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/mesh.h"
-#include "engine/state_hash.h"
+#include "engine/mesh/mesh.h"
+#include "engine/mesh/state_hash.h"
 #include "pyramid/memory.h"
 
 namespace bench {

@@ -20,9 +20,9 @@
 #include <string>
 #include <thread>
 
-#include "engine/evolution.h"
-#include "engine/iso_surface.h"
-#include "engine/refinement.h"
+#include "engine/recover/evolution.h"
+#include "engine/resolve/refinement.h"
+#include "engine/start/iso_surface.h"
 #include "perf/bench_copy.h"
 #include "perf/bench_potential.h"
 

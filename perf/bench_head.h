@@ -4,11 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "engine/constants.h"
-#include "engine/parameters.h"
-#include "engine/recovery.h"
+#include "engine/api/parameters.h"
+#include "engine/base/constants.h"
+#include "engine/recover/recovery.h"
 #include "perf/bench_copy.h"
-#include "tools/volume_io.h"
+#include "tools/file/failure.h"
+#include "tools/volume/volume_io.h"
 
 namespace bench {
 

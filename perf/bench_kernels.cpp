@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "engine/dynamics.h"
+#include "engine/motion/dynamics.h"
 #include "kernels/guided_stage.h"
 #include "kernels/image_force.h"
 #include "kernels/integrate.h"

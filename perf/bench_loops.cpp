@@ -1,6 +1,6 @@
 // What it takes to share out loops: 100 of 8 tasks of 5 us each on all cores, with serial code of
-// so many us before each, which is not counted. "team" is what the engine does (engine/team.h),
-// "onetbb" the same by parallel_for in an arena of oneTBB.
+// so many us before each, which is not counted. "team" is what the engine does
+// (engine/base/team.h), "onetbb" the same by parallel_for in an arena of oneTBB.
 #include <benchmark/benchmark.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -10,7 +10,7 @@
 #include <functional>
 #include <thread>
 
-#include "engine/schedule.h"
+#include "engine/base/schedule.h"
 
 namespace {
 

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "engine/evolution.h"
-#include "engine/initial_surface.h"
-#include "engine/refinement.h"
+#include "engine/recover/evolution.h"
+#include "engine/resolve/refinement.h"
+#include "engine/start/initial_surface.h"
 #include "kernels/simd.h"
 #include "pyramid/buffer.h"
 

@@ -15,13 +15,14 @@
 #include <numeric>
 #include <thread>
 
-#include "engine/blocks.h"
-#include "engine/evolution.h"
-#include "engine/missed_places.h"
-#include "engine/refinement.h"
+#include "engine/base/blocks.h"
+#include "engine/recover/evolution.h"
+#include "engine/resolve/refinement.h"
+#include "engine/start/missed_places.h"
 #include "kernels/ring_forces.h"
 #include "perf/bench_head.h"
 #include "pyramid/memory.h"
+#include "tools/file/failure.h"
 
 namespace {
 

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/volume_io.h"
+#include "tools/file/failure.h"
+#include "tools/volume/volume_io.h"
 
 namespace peer {
 

@@ -1,6 +1,6 @@
 // ITK images of a volume, and the pyramid that ITK makes of one.
 #pragma once
-// As in tools/volume_io_itk.cpp: Debian's ITK turns every compiler but GCC away.
+// As in tools/volume/volume_io_itk.cpp: Debian's ITK turns every compiler but GCC away.
 #ifdef __clang__
 #define ITK_COMPILER_DETECTION_H
 #define ITK_NOEXCEPT noexcept

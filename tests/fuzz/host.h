@@ -6,7 +6,7 @@
 
 #include "engine/pellicle.h"
 #include "tests/fuzz/input.h"
-#include "tests/sample_handles.h"
+#include "tests/samples/sample_handles.h"
 
 namespace fuzz {
 

@@ -7,7 +7,7 @@
 
 #include "tests/fuzz/host.h"
 #include "tests/fuzz/random_arguments.h"
-#include "tests/sample_meshes.h"
+#include "tests/samples/sample_meshes.h"
 
 namespace fuzz {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "tests/fuzz/input.h"
-#include "tools/extract_options.h"
-#include "tools/option_values.h"
+#include "tools/command/extract_options.h"
+#include "tools/command/option_values.h"
 
 namespace fuzz {
 

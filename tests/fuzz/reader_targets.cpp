@@ -5,10 +5,10 @@
 
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/refusal.h"
-#include "tools/attach_file.h"
-#include "tools/inv3.h"
-#include "tools/mesh_io_formats.h"
-#include "tools/volume_io_memory.h"
+#include "tools/command/attach_file.h"
+#include "tools/mesh/mesh_io_formats.h"
+#include "tools/volume/inv3.h"
+#include "tools/volume/volume_io_memory.h"
 
 namespace fuzz {
 

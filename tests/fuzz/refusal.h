@@ -4,7 +4,7 @@
 #include <string>
 
 #include "tests/fuzz/input.h"
-#include "tools/volume_io.h"
+#include "tools/file/failure.h"
 
 namespace fuzz {
 

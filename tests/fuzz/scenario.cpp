@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "tests/sample_meshes.h"
+#include "tests/samples/sample_meshes.h"
 
 namespace fuzz {
 

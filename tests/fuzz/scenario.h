@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tests/fuzz/host.h"
-#include "tests/sample_volumes.h"
+#include "tests/samples/sample_volumes.h"
 
 namespace fuzz {
 

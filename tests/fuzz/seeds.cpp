@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "tests/sample_files.h"
-#include "tests/sample_meshes.h"
-#include "tests/sample_volumes.h"
-#include "tools/mesh_io.h"
+#include "tests/samples/sample_files.h"
+#include "tests/samples/sample_meshes.h"
+#include "tests/samples/sample_volumes.h"
+#include "tools/mesh/mesh_io.h"
 
 namespace {
 

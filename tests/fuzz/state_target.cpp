@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "engine/fingerprint.h"
+#include "engine/api/fingerprint.h"
 #include "tests/fuzz/host.h"
-#include "tests/sample_volumes.h"
+#include "tests/samples/sample_volumes.h"
 
 namespace fuzz {
 

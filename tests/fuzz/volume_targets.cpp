@@ -7,8 +7,8 @@
 
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/refusal.h"
-#include "tools/volume_io_formats.h"
-#include "tools/volume_io_itk.h"
+#include "tools/volume/volume_io_formats.h"
+#include "tools/volume/volume_io_itk.h"
 
 namespace fuzz {
 

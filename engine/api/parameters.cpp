@@ -1,0 +1,255 @@
+#include "engine/api/parameters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "engine/base/constants.h"
+#include "pyramid/window.h"
+
+namespace plc {
+
+namespace {
+
+std::string text(double value) {
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.9g", value);
+  return buffer;
+}
+
+Status bad(const std::string& name, double value, const std::string& expected) {
+  return {ErrorCode::kInvalidArgument, name + " " + text(value) + ": must be " + expected};
+}
+
+struct Range {
+  const char* name;
+  double value;
+  bool valid;
+  const char* expected;
+};
+
+Status check_ranges(std::initializer_list<Range> ranges) {
+  for (const Range& r : ranges) {
+    if (!r.valid) return bad(r.name, r.value, r.expected);
+  }
+  return {};
+}
+
+// On a head CT the soft tissue around the bone fills the coarse levels below 1/8.
+constexpr double kLevelIsoMargin = 0.25;
+
+// Far beyond any use; keeps every product of coefficients within floats.
+constexpr double kMaxCoefficient = 1e6;
+
+bool coefficient(double x) {
+  return x >= 0 && x <= kMaxCoefficient;
+}
+bool positive(double x) {
+  return x >= 1e-6 && x <= kMaxCoefficient;
+}
+
+Status check_levels(const plc_parameters& p) {
+  if (p.levels < -1 || p.levels >= PLC_MAX_LEVELS) {
+    return bad("levels", p.levels, "0 .. " + std::to_string(PLC_MAX_LEVELS - 1));
+  }
+  if (!(p.reduction > 1 && p.reduction <= 2)) {
+    return bad("reduction", p.reduction, "above 1 and at most 2");
+  }
+  if (p.level_iso_count < 0 || p.level_iso_count > PLC_MAX_LEVELS ||
+      (p.level_iso_count > 0 && p.levels >= 0 && p.level_iso_count != p.levels + 1)) {
+    return {ErrorCode::kInvalidArgument,
+            "level iso-values: " + std::to_string(p.level_iso_count) + " given, " +
+                std::to_string(std::max(p.levels, 0) + 1) + " expected (one per level)"};
+  }
+  return {};
+}
+
+Status check_choices(const plc_parameters& p) {
+  return check_ranges(
+      {{"init", static_cast<double>(p.init), p.init >= PLC_INIT_BUBBLE && p.init <= PLC_INIT_MESH,
+        "a plc_init"},
+       {"force", static_cast<double>(p.force),
+        p.force >= PLC_FORCE_ISO && p.force <= PLC_FORCE_BOTH, "a plc_force"},
+       {"feature", static_cast<double>(p.feature),
+        p.feature >= PLC_FEATURE_NONE && p.feature <= PLC_FEATURE_GRADIENT_NORM, "a plc_feature"},
+       {"late bubbles", static_cast<double>(p.late_bubbles),
+        p.late_bubbles == 0 || p.late_bubbles == 1, "0 or 1"},
+       {"sleeping", static_cast<double>(p.sleeping), p.sleeping == 0 || p.sleeping == 1, "0 or 1"},
+       {"slow vertices", static_cast<double>(p.slow_vertices),
+        p.slow_vertices == 0 || p.slow_vertices == 1, "0 or 1"},
+       {"renumbering", static_cast<double>(p.renumbering), p.renumbering == 0 || p.renumbering == 1,
+        "0 or 1"},
+       {"rest length", static_cast<double>(p.rest_length),
+        p.rest_length >= PLC_REST_ZERO && p.rest_length <= PLC_REST_VALUE, "a plc_rest_length"},
+       {"bound", static_cast<double>(p.bound),
+        p.bound >= PLC_BOUND_CLAMP && p.bound <= PLC_BOUND_SCALE, "a plc_bound"},
+       {"anisotropy", static_cast<double>(p.anisotropy),
+        p.anisotropy >= PLC_ANISOTROPY_PHYSICAL && p.anisotropy <= PLC_ANISOTROPY_METRIC,
+        "a plc_anisotropy"}});
+}
+
+// An object that the surroundings of the image belong to has no end: its surface would grow for
+// ever.
+Status check_surroundings(const plc_parameters& p) {
+  if (std::isnan(p.iso) || p.force == PLC_FORCE_GRADIENT) return {};
+  const auto outside = [&](double iso) {
+    return p.inside_below == 0 ? p.pad_value < iso : p.pad_value > iso;
+  };
+  const std::string pad = "pad value " + text(p.pad_value) + ": ";
+  if (!outside(p.iso)) {
+    return {ErrorCode::kInvalidArgument, pad + "on the object's side of iso " + text(p.iso)};
+  }
+  for (int h = 0; h < p.level_iso_count; ++h) {
+    if (outside(p.level_iso[h])) continue;
+    return {ErrorCode::kInvalidArgument,
+            pad + "on the object's side of level iso-value " + text(p.level_iso[h])};
+  }
+  return {};
+}
+
+}  // namespace
+
+Status check_parameters(const plc_parameters& p) {
+  if (Status s = check_choices(p); !s.ok()) return s;
+  if (std::isnan(p.iso)) {
+    if (p.force != PLC_FORCE_GRADIENT) return {ErrorCode::kInvalidArgument, "iso: not set"};
+    if (p.init == PLC_INIT_ISO) {
+      return {ErrorCode::kInvalidArgument, "iso: not set, but the start is an iso-surface"};
+    }
+    if (p.level_iso_count != 0) {
+      return {ErrorCode::kInvalidArgument, "level iso-values: given, but iso is not set"};
+    }
+  }
+  if (std::isinf(p.iso)) return bad("iso", p.iso, "finite");
+  if (Status s = check_levels(p); !s.ok()) return s;
+  for (const int n : p.bubbles) {
+    if (n < 1 || n > 256) return bad("bubbles", n, "1 .. 256 per axis");
+  }
+  for (int h = 0; h < p.level_iso_count; ++h) {
+    if (!std::isfinite(p.level_iso[h])) return bad("level iso-value", p.level_iso[h], "finite");
+  }
+  return check_ranges({
+      {"window low", p.window_low, !std::isinf(p.window_low), "finite"},
+      {"window high", p.window_high, !std::isinf(p.window_high), "finite"},
+      {"pad value", p.pad_value, !std::isinf(p.pad_value), "finite"},
+      {"curvature", p.curvature, coefficient(p.curvature), "0 .. 1e6"},
+      {"spring", p.spring, coefficient(p.spring), "0 .. 1e6"},
+      {"rest length", p.rest_length_value, coefficient(p.rest_length_value), "0 .. 1e6"},
+      {"attraction", p.attraction, positive(p.attraction), "1e-6 .. 1e6"},
+      {"gradient", p.gradient, coefficient(std::abs(p.gradient)), "-1e6 .. 1e6"},
+      {"gradient tangent", p.gradient_tangent, coefficient(std::abs(p.gradient_tangent)),
+       "-1e6 .. 1e6"},
+      {"gradient bound", p.gradient_bound, positive(p.gradient_bound), "1e-6 .. 1e6"},
+      {"feature sigma", p.feature_sigma, coefficient(p.feature_sigma), "0 .. 1e6 mm"},
+      {"calm speed", p.calm_speed, coefficient(p.calm_speed), "0 .. 1e6"},
+      {"mass", p.mass, positive(p.mass), "1e-6 .. 1e6"},
+      {"damping", p.damping, coefficient(p.damping), "0 .. 1e6"},
+      {"time step", p.time_step, positive(p.time_step), "1e-6 .. 1e6"},
+      {"max move", p.max_move, p.max_move > 0 && p.max_move <= 1, "above 0 and at most 1 delta"},
+      {"epsilon", p.epsilon, p.epsilon > 0 && p.epsilon <= 1, "above 0 and at most 1"},
+      {"max iterations", static_cast<double>(p.max_iterations), p.max_iterations >= 1,
+       "at least 1"},
+  });
+}
+
+Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
+                         const Executor& executor, plc_parameters& p, double& background) {
+  const bool above = p.inside_below == 0;
+  if (range.low == range.high) {
+    return {ErrorCode::kInvalidData,
+            "constant image: every voxel is " + text(range.low) + ", there is no surface in it"};
+  }
+  const bool within = std::isnan(p.iso) || (above ? p.iso > range.low && p.iso <= range.high
+                                                  : p.iso >= range.low && p.iso < range.high);
+  if (!within) {
+    return {ErrorCode::kInvalidArgument, "iso " + text(p.iso) + ": outside the image's range " +
+                                             text(range.low) + " .. " + text(range.high)};
+  }
+  const DerivedWindow window = std::isnan(p.iso)
+                                   ? DerivedWindow{{range.low, range.high}, range.low}
+                                   : derive_window(volume, range, p.iso, above, executor);
+  background = window.background;
+  if (std::isnan(p.window_low)) p.window_low = window.low;
+  if (std::isnan(p.window_high)) p.window_high = window.high;
+  const std::string window_text =
+      "window " + text(p.window_low) + ", " + text(p.window_high) + ": ";
+  if (std::isnan(p.iso)) {
+    if (!(p.window_low < p.window_high)) {
+      return {ErrorCode::kInvalidArgument, window_text + "must be a low value and a higher one"};
+    }
+  } else if (!(p.window_low < p.iso && p.iso < p.window_high)) {
+    return {ErrorCode::kInvalidArgument,
+            window_text + "iso " + text(p.iso) + " must lie inside it"};
+  }
+  for (int h = 0; h < p.level_iso_count; ++h) {
+    if (p.level_iso[h] <= p.window_low || p.level_iso[h] >= p.window_high) {
+      return {ErrorCode::kInvalidArgument, "level iso-value " + text(p.level_iso[h]) +
+                                               ": outside the window " + text(p.window_low) + ", " +
+                                               text(p.window_high)};
+    }
+  }
+  if (std::isnan(p.pad_value)) p.pad_value = above ? p.window_low : p.window_high;
+  if (Status s = check_surroundings(p); !s.ok()) return s;
+  const int deepest = max_levels(padded_dims(volume.dims, kPadVoxels), p.reduction);
+  if (p.levels < 0 && p.level_iso_count > 0) p.levels = p.level_iso_count - 1;
+  if (p.levels < 0) p.levels = std::min(3, deepest);
+  return {};
+}
+
+double level_iso_bound(const plc_parameters& p, double background) {
+  const double surroundings =
+      p.inside_below == 0 ? std::max(background, p.pad_value) : std::min(background, p.pad_value);
+  return normalised(p, surroundings + kLevelIsoMargin * (p.iso - surroundings));
+}
+
+PyramidSpec pyramid_spec(const plc_parameters& p) {
+  PyramidSpec spec;
+  spec.reduction = p.reduction;
+  spec.levels = p.levels;
+  spec.window_low = p.window_low;
+  spec.window_high = p.window_high;
+  spec.pad_value = p.pad_value;
+  spec.pad_voxels = kPadVoxels;
+  return spec;
+}
+
+RecoverySpec recovery_spec(const plc_parameters& p) {
+  RecoverySpec spec;
+  spec.inside_above = p.inside_below == 0;
+  Model& m = spec.model;
+  m.curvature = static_cast<float>(p.curvature);
+  m.spring = static_cast<float>(p.spring);
+  m.rest_length = static_cast<RestLength>(p.rest_length);
+  m.rest_length_value = static_cast<float>(p.rest_length_value);
+  // alpha_I is negative when the object is bright: (7).
+  if (p.force == PLC_FORCE_GRADIENT) {
+    m.attraction = 0;
+  } else {
+    m.attraction = static_cast<float>(spec.inside_above ? -p.attraction : p.attraction);
+  }
+  if (p.force != PLC_FORCE_ISO) {
+    m.gradient_normal = static_cast<float>(p.gradient);
+    m.gradient_tangent = static_cast<float>(p.gradient_tangent);
+  }
+  spec.gradient_bound = p.gradient_bound;
+  m.mass = static_cast<float>(p.mass);
+  m.damping = static_cast<float>(p.damping);
+  m.time_step = static_cast<float>(p.time_step);
+  m.max_move = static_cast<float>(p.max_move);
+  m.bound = static_cast<Bound>(p.bound);
+  spec.pad_voxels = kPadVoxels;
+  spec.anisotropy = static_cast<Anisotropy>(p.anisotropy);
+  spec.start.init = static_cast<Init>(p.init);
+  spec.start.bubbles = {p.bubbles[0], p.bubbles[1], p.bubbles[2]};
+  // Without the force towards iso nothing holds a bubble to what it tells.
+  spec.late_bubbles = p.late_bubbles != 0 && p.force != PLC_FORCE_GRADIENT;
+  spec.sleeping = p.sleeping != 0;
+  spec.slow_vertices = p.slow_vertices != 0;
+  spec.renumbering = p.renumbering != 0;
+  spec.calm_speed = p.calm_speed;
+  spec.epsilon = p.epsilon;
+  spec.max_iterations = p.max_iterations;
+  return spec;
+}
+
+}  // namespace plc

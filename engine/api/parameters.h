@@ -1,0 +1,35 @@
+// From what a caller asks for (plc_parameters) to what the engine runs with: checked and derived.
+#pragma once
+#include "engine/pellicle.h"
+#include "engine/recover/recovery.h"
+#include "pyramid/pyramid.h"
+#include "pyramid/status.h"
+
+namespace plc {
+
+// Checks every field on its own. The message names the parameter, its value and the range.
+Status check_parameters(const plc_parameters& parameters);
+
+// Fills in what is NAN or -1: window, pad value, level count. `range` is that of the image;
+// `background` is set to the typical value across the surface from the object (window.h). Errors:
+// kInvalidArgument, kInvalidData (constant or not finite image, iso outside the range).
+Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
+                         const Executor& executor, plc_parameters& parameters, double& background);
+
+// Image units to [0,1] of the window and back.
+inline double normalised(const plc_parameters& p, double value) {
+  return (value - p.window_low) / (p.window_high - p.window_low);
+}
+inline double denormalised(const plc_parameters& p, double value) {
+  return p.window_low + value * (p.window_high - p.window_low);
+}
+
+// How far the iso-value of a coarse level, normalised, may go from that of I_0 towards the
+// background: the rest of the way is where the object's surroundings would be taken for it.
+double level_iso_bound(const plc_parameters& parameters, double background);
+
+PyramidSpec pyramid_spec(const plc_parameters& parameters);
+// Everything but the iso-values of the levels and what plc_extras holds.
+RecoverySpec recovery_spec(const plc_parameters& parameters);
+
+}  // namespace plc

@@ -1,0 +1,79 @@
+#include "engine/detect/proximity.h"
+
+#include <algorithm>
+
+#include "engine/base/constants.h"
+#include "engine/transform/inversion.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+namespace {
+
+// The edge a-b whose two faces have the apexes u and w, if any.
+std::optional<Edge> edge_across(const Neighbors& of_u, const Mesh& mesh, uint32_t u, uint32_t w) {
+  const Neighbors of_w = mesh.ring(w);
+  for (uint32_t k = 0; k < of_u.size(); ++k) {
+    const uint32_t a = of_u[k];
+    const uint32_t b = of_u.next(k);
+    const uint32_t j = of_w.find(b);
+    // (u, a, b) is a face; the other face of a-b is (w, b, a).
+    if (j < of_w.size() && of_w.next(j) == a) return Edge{a, b, w, u};
+  }
+  return std::nullopt;
+}
+
+bool freshly_cut(const Mesh& mesh, uint32_t u, uint32_t w, uint32_t iteration) {
+  if (mesh.cut_id[u] == 0 || mesh.cut_id[u] != mesh.cut_id[w]) return false;
+  if (iteration - mesh.cut_iteration[u] >= kCutExemption) return false;
+  const Vec3 speed = mesh.velocity.at(w) - mesh.velocity.at(u);
+  return dot(speed, mesh.at(w) - mesh.at(u)) >= 0;
+}
+
+std::optional<Candidate> classify(const Mesh& mesh, const Neighbors& of_u, uint32_t u, uint32_t w,
+                                  uint32_t iteration) {
+  const float distance2 = squared_distance(mesh.at(u), mesh.at(w));
+  if (const auto across = edge_across(of_u, mesh, u, w)) {
+    const float across2 = squared_distance(mesh.at(across->u), mesh.at(across->v));
+    if (distance2 >= across2 || !can_invert(mesh, *across)) return std::nullopt;
+    return Candidate{Operation::kInversion, distance2, *across};
+  }
+  if (freshly_cut(mesh, u, w, iteration)) return std::nullopt;
+  if (dot(vertex_normal(mesh, u), vertex_normal(mesh, w)) > kAxialMaxNormalDot) {
+    return std::nullopt;
+  }
+  return Candidate{Operation::kAxial, distance2, {std::min(u, w), std::max(u, w), 0, 0}};
+}
+
+}  // namespace
+
+std::optional<Candidate> pair_candidate(const Mesh& mesh, uint32_t u, uint32_t w,
+                                        uint32_t iteration) {
+  const auto reach = kMinApart * static_cast<float>(mesh.delta);
+  if (!mesh.alive(u) || !mesh.alive(w) ||
+      squared_distance(mesh.at(u), mesh.at(w)) >= reach * reach) {
+    return std::nullopt;
+  }
+  const Neighbors ring = mesh.ring(u);
+  return ring.contains(w) ? std::nullopt : classify(mesh, ring, u, w, iteration);
+}
+
+void proximity_candidates(const Mesh& mesh, const SpatialHash& hash, uint32_t u,
+                          const Vector<uint32_t>& pending, uint32_t stamp, uint32_t iteration,
+                          Vector<Candidate>& candidates) {
+  const auto reach = kMinApart * static_cast<float>(mesh.delta);
+  const Vec3 p = mesh.at(u);
+  const Neighbors ring = mesh.ring(u);
+  const Vec3 span{reach, reach, reach};
+  const size_t most = candidates.size() + kMostNear;
+  hash.visit_box(mesh, p - span, p + span, [&](uint32_t w, Vec3 q) {
+    if (candidates.size() == most || w == u || squared_distance(p, q) >= reach * reach) return;
+    if (pending[w] == stamp && w < u) return;
+    if (ring.contains(w)) return;
+    if (const auto candidate = classify(mesh, ring, u, w, iteration)) {
+      candidates.push_back(*candidate);
+    }
+  });
+}
+
+}  // namespace plc

@@ -1,0 +1,199 @@
+#include "engine/detect/surroundings.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "engine/base/blocks.h"
+#include "engine/base/constants.h"
+#include "engine/base/parallel_sort.h"
+#include "engine/detect/risk.h"
+#include "kernels/nearby.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+namespace {
+
+constexpr size_t kTaskVertices = 128;
+// A group is what follows one another in a box whose sides are no longer than this, in delta:
+// vertices are numbered along a curve that keeps neighbours together.
+constexpr float kGroupBox = 8;
+// Nothing is turned so far.
+constexpr float kNone = -2;
+
+// A vertex and its neighbours, to be asked for again and again: where in the ring one stands is as
+// good as random, and no branch depends on it. Slots past the valence hold the vertex itself.
+class ClosedRing {
+ public:
+  ClosedRing(const Mesh& mesh, uint32_t v) : mesh_(mesh), v_(v), long_(mesh.valence(v) > kCommon) {
+    const RingView rings = mesh.rings();
+    for (uint32_t k = 0; k < kCommon; ++k) slots_[k] = rings.column(v, k);
+  }
+  bool contains(uint32_t w) const {
+    uint32_t found = static_cast<uint32_t>(w == v_);
+    for (uint32_t k = 0; k < kCommon; ++k) found |= static_cast<uint32_t>(slots_[k] == w);
+    return found != 0 || (long_ && mesh_.adjacent(v_, w));
+  }
+
+ private:
+  static constexpr uint32_t kCommon = 8;  // nearly every ring has no more
+  const Mesh& mesh_;
+  uint32_t v_;
+  bool long_;
+  uint32_t slots_[kCommon];
+};
+
+}  // namespace
+
+void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash) {
+  search(due, hash, Wanted::kNearAndRisk);
+}
+
+void Surroundings::search_near(const Vector<uint32_t>& all, const SpatialHash& hash) {
+  search(all, hash, Wanted::kNear);
+}
+
+void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted) {
+  assert(std::is_sorted(due.begin(), due.end()));
+  assert(due.empty() || due.back() < mesh_.slots());
+  const float reach =
+      (wanted == Wanted::kNear ? kMinApart : kRiskReach) * static_cast<float>(mesh_.delta);
+  const Vec3 span{reach, reach, reach};
+  const size_t tasks = block_count(due.size(), kTaskVertices);
+  tasks_.resize(std::max(tasks_.size(), tasks));
+  run_blocks(executor_, due.size(), kTaskVertices, [&](size_t index, size_t begin, size_t end) {
+    Task& task = tasks_[index];
+    task.too_near.clear();
+    task.at_risk.clear();
+    task.distinct_at_risk = 0;
+    const Spares<Scratch>::Lent lent = scratches_.lend();
+    Scratch& scratch = *lent;
+    for (size_t i = begin; i < end;) {
+      Vec3 low, high;
+      const size_t count = group_size(due.data() + i, end - i, low, high);
+      hash.collect(mesh_, low - span, high + span, scratch.around);
+      search_group(due.data() + i, count, wanted, scratch, task);
+      i += count;
+    }
+  });
+  too_near_.clear();
+  at_risk_.clear();
+  for (size_t index = 0; index < tasks; ++index) {
+    const Task& task = tasks_[index];
+    too_near_.insert(too_near_.end(), task.too_near.begin(), task.too_near.end());
+    at_risk_.insert(at_risk_.end(), task.at_risk.begin(), task.at_risk.end());
+  }
+  parallel_sort(too_near_, executor_);
+  too_near_.erase(std::unique(too_near_.begin(), too_near_.end()), too_near_.end());
+}
+
+// How many of the vertices make a group, and its box.
+size_t Surroundings::group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high) const {
+  const float longest = kGroupBox * static_cast<float>(mesh_.delta);
+  low = high = mesh_.at(due[0]);
+  size_t size = 1;
+  for (; size < count; ++size) {
+    const Vec3 p = mesh_.at(due[size]);
+    const Vec3 l{std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    const Vec3 h{std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    const Vec3 extent = h - l;
+    if (std::max(std::max(extent.x, extent.y), extent.z) > longest) break;
+    low = l;
+    high = h;
+  }
+  return size;
+}
+
+// The places of what is around, and the normals where they are wanted.
+void Surroundings::fetch(Wanted wanted, Scratch& scratch) const {
+  const size_t count = scratch.around.ids.size();
+  const size_t padded = block_count(count, kRingLanes) * kRingLanes;
+  for (auto& stream : scratch.streams) stream.resize(std::max(stream.size(), padded));
+  scratch.hits.resize(std::max(scratch.hits.size(), count));
+  auto& [x, y, z, nx, ny, nz] = scratch.streams;
+  for (size_t i = 0; i < count; ++i) {
+    const Packed& p = mesh_.packed[scratch.around.ids[i]];
+    x[i] = p.x, y[i] = p.y, z[i] = p.z;
+  }
+  if (wanted == Wanted::kNear) return;
+  for (size_t i = 0; i < count; ++i) {
+    const Vec3 n = mesh_.normal.at(scratch.around.ids[i]);
+    nx[i] = n.x, ny[i] = n.y, nz[i] = n.z;
+  }
+}
+
+void Surroundings::search_group(const uint32_t* due, size_t count, Wanted wanted, Scratch& scratch,
+                                Task& task) const {
+  fetch(wanted, scratch);
+  const auto around = static_cast<uint32_t>(scratch.around.ids.size());
+  const auto& [x, y, z, nx, ny, nz] = scratch.streams;
+  const bool near_only = wanted == Wanted::kNear;
+  // With no normal to compare with nothing is turned, whatever is in the streams.
+  const kernels::NearbyView view =
+      near_only
+          ? kernels::NearbyView{x.data(), y.data(), z.data(), x.data(), y.data(), z.data(), around}
+          : kernels::NearbyView{x.data(),  y.data(),  z.data(), nx.data(),
+                                ny.data(), nz.data(), around};
+  const float near = kMinApart * static_cast<float>(mesh_.delta);
+  const float far = near_only ? near : kRiskReach * static_cast<float>(mesh_.delta);
+  for (size_t i = 0; i < count; ++i) {
+    const Vec3 p = mesh_.at(due[i]);
+    const Vec3 n = near_only ? Vec3{} : mesh_.normal.at(due[i]);
+    const uint32_t hits = kernels::near_or_turned(
+        simd_, view,
+        {p.x, p.y, p.z, n.x, n.y, n.z, near * near, far * far, near_only ? kNone : kRiskDot},
+        scratch.hits.data());
+    if (near_only) {
+      list_near(due[i], hits, scratch, task);
+    } else {
+      judge(due[i], hits, scratch, task);
+    }
+  }
+}
+
+// The pairs in which v has the smaller id; the other one sees the others.
+void Surroundings::list_near(uint32_t v, uint32_t hits, const Scratch& scratch, Task& task) const {
+  const size_t most = task.too_near.size() + kMostNear;
+  for (uint32_t k = 0; k < hits && task.too_near.size() < most; ++k) {
+    const uint32_t w = scratch.around.ids[scratch.hits[k]];
+    if (w > v && mesh_.alive(w) && !mesh_.adjacent(v, w)) task.too_near.push_back({v, w});
+  }
+}
+
+void Surroundings::judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task) const {
+  const Vec3 p = mesh_.at(v), n = mesh_.normal.at(v);
+  const float near = kMinApart * static_cast<float>(mesh_.delta);
+  const ClosedRing ring(mesh_, v);
+  scratch.turned.clear();
+  const size_t most = task.too_near.size() + kMostNear;
+  for (uint32_t k = 0; k < hits; ++k) {
+    const uint32_t w = scratch.around.ids[scratch.hits[k]];
+    if (ring.contains(w) || !mesh_.alive(w)) continue;
+    if (squared_distance(p, mesh_.at(w)) < near * near && task.too_near.size() < most) {
+      task.too_near.push_back({std::min(v, w), std::max(v, w)});
+    }
+    if (dot(n, mesh_.normal.at(w)) <= kRiskDot) scratch.turned.push_back(w);
+  }
+  if (!scratch.turned.empty()) list_risk(v, scratch.turned, task);
+}
+
+void Surroundings::list_risk(uint32_t v, const Vector<uint32_t>& turned, Task& task) const {
+  const size_t before = task.at_risk.size();
+  if (mesh_.valence(v) > kRiskRing) {
+    task.at_risk.insert(task.at_risk.end(), turned.begin(), turned.end());
+  } else {
+    const Risk risk(mesh_, v);
+    for (const uint32_t w : turned) {
+      if (risk.may_meet(w)) task.at_risk.push_back(w);
+    }
+  }
+  if (task.at_risk.size() > before) task.at_risk.push_back(v);
+  // Where much is near, it is so to many.
+  constexpr size_t kMany = 1 << 14;
+  if (task.at_risk.size() < std::max(kMany, 2 * task.distinct_at_risk)) return;
+  std::sort(task.at_risk.begin(), task.at_risk.end());
+  task.at_risk.erase(std::unique(task.at_risk.begin(), task.at_risk.end()), task.at_risk.end());
+  task.distinct_at_risk = task.at_risk.size();
+}
+
+}  // namespace plc

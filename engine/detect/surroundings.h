@@ -1,0 +1,79 @@
+// What lies around the vertices that are due for a check: one search for constraint (3) and, where
+// vertices have moved, for the motion guard.
+#pragma once
+#include <cstdint>
+
+#include "engine/base/spares.h"
+#include "engine/detect/spatial_hash.h"
+#include "engine/mesh/mesh.h"
+#include "kernels/simd.h"
+#include "pyramid/executor.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+struct VertexPair {
+  uint32_t u, w;
+  friend bool operator==(const VertexPair& a, const VertexPair& b) {
+    return a.u == b.u && a.w == b.w;
+  }
+  friend bool operator<(const VertexPair& a, const VertexPair& b) {
+    return a.u != b.u ? a.u < b.u : a.w < b.w;
+  }
+};
+
+// Due vertices that are neighbours in memory lie near each other: what is around a group of them is
+// fetched once, into streams, and searched for each of them by a kernel.
+class Surroundings {
+ public:
+  Surroundings(const Mesh& mesh, const Executor& executor, SimdTarget simd)
+      : mesh_(mesh), executor_(executor), simd_(simd) {}
+
+  // due: ascending. The hash holds every living vertex. Normals are those of mesh.normal.
+  void search(const Vector<uint32_t>& due, const SpatialHash& hash);
+  // Only what is too near, for constraint (3), around all living vertices: a smaller box, no
+  // normals, and each pair is seen from one side.
+  void search_near(const Vector<uint32_t>& all, const SpatialHash& hash);
+
+  // Of the last search: the non-neighbours u < w, one of them due, that are nearer than (3) allows;
+  // sorted.
+  const Vector<VertexPair>& too_near() const { return too_near_; }
+  // Of the last search: the vertices at risk (risk.h), one of each two at least due; some twice.
+  // None after search_near().
+  const Vector<uint32_t>& at_risk() const { return at_risk_; }
+
+ private:
+  // What one task has found.
+  struct Task {
+    Vector<VertexPair> too_near;
+    Vector<uint32_t> at_risk;
+    size_t distinct_at_risk = 0;  // when they were last told apart
+  };
+  // What it works with.
+  struct Scratch {
+    SpatialHash::Collected around;  // the group
+    Vector<float> streams[6];       // their places and normals
+    Vector<uint32_t> hits;
+    Vector<uint32_t> turned;
+  };
+  enum class Wanted { kNear, kNearAndRisk };
+  void search(const Vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted);
+  void fetch(Wanted wanted, Scratch& scratch) const;
+  void search_group(const uint32_t* due, size_t count, Wanted wanted, Scratch& scratch,
+                    Task& task) const;
+  void list_near(uint32_t v, uint32_t hits, const Scratch& scratch, Task& task) const;
+  void judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task) const;
+  // turned: what is turned against v, and near enough.
+  void list_risk(uint32_t v, const Vector<uint32_t>& turned, Task& task) const;
+  size_t group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high) const;
+
+  const Mesh& mesh_;
+  const Executor& executor_;
+  SimdTarget simd_;
+  Vector<Task> tasks_;
+  Spares<Scratch> scratches_;
+  Vector<VertexPair> too_near_;
+  Vector<uint32_t> at_risk_;
+};
+
+}  // namespace plc

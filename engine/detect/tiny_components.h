@@ -1,0 +1,47 @@
+// Deletion of tetrahedra and of tiny components that turn inside out (3.3).
+#pragma once
+
+#include "engine/base/state_io.h"
+#include "engine/mesh/mesh.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+// v and its neighbours are a whole component of four vertices.
+bool is_tetrahedron(const Mesh& mesh, uint32_t v);
+void delete_tetrahedron(Mesh& mesh, uint32_t v);
+
+// Follows the components of up to kTinyComponent vertices. A flat tetrahedron, or a small bubble
+// between two fronts, inverts without violating (1)-(3) and would stay for ever.
+class TinyComponents {
+ public:
+  // Looks at every vertex: at the start of a level.
+  void start(Mesh& mesh);
+  // Looks at the components followed so far and at those of `changed`; deletes what has turned over
+  // or nearly vanished. Returns how many were deleted.
+  int64_t update(Mesh& mesh, const Vector<uint32_t>& changed);
+  // Forgets all: ids have changed.
+  void clear() { watched_.clear(); }
+  // What is followed, for a mesh of so many ids.
+  void save(StateWriter& to) const { to.add_all(watched_); }
+  void restore(StateReader& from, uint32_t slots);
+
+ private:
+  struct Watched {
+    uint32_t vertex;    // the smallest id of the component
+    uint32_t positive;  // sign of the volume when it was first seen: 1 or 0
+  };
+  // The component of v, when it has at most kTinyComponent vertices; else empty.
+  const Vector<uint32_t>& flood(const Mesh& mesh, uint32_t v);
+
+  Vector<Watched> watched_;
+  // Whether a flood of this update has come across v.
+  bool seen(uint32_t v) const { return seen_[v] >= first_flood_; }
+
+  Vector<uint32_t> seen_;  // by vertex: the last flood that came across it, counted from 1
+  Vector<uint32_t> component_;
+  uint32_t flood_ = 0;
+  uint32_t first_flood_ = 1;  // of this update
+};
+
+}  // namespace plc

@@ -1,0 +1,108 @@
+// The faces of the engine's mesh that meet since some vertices moved; for asking in every step.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/base/four.h"
+#include "engine/base/spares.h"
+#include "engine/exact/self_intersection.h"
+#include "kernels/box_lanes.h"
+#include "kernels/face_pairs.h"
+#include "kernels/ring.h"
+#include "kernels/simd.h"
+#include "pyramid/buffer.h"
+#include "pyramid/executor.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+// Faces that share a vertex are looked at vertex by vertex (vertex_star.h), and one by one only
+// where that leaves a doubt. For all others there is a tree of boxes, 8 children to a node, over
+// the faces in the order of ids: vertices are numbered along a space-filling curve, so nothing has
+// to be sorted and boxes are tight; with any other numbering results are the same and searches
+// slow. Only the faces around marked vertices are listed.
+//
+//   buffer    bytes per listed face   what
+//   faces     12                      three ids, the first marked vertex in front, in its order
+//   boxes     27.4                    per node: boxes of 8 faces or nodes, lane by lane
+//   moved     0.15                    per node: in which of the 8 a face has moved
+//   vertices  4 per vertex            marked vertices and their neighbours
+//   begin     4 per vertex            of those: the first face
+//
+// and a byte per vertex of the mesh that tells the listed ones. Buffers are kept from call to call.
+// Not thread-safe: one search at a time.
+class MeetingSearch {
+ public:
+  explicit MeetingSearch(SimdTarget simd = best_simd_target()) : simd_(simd) {}
+
+  // rings and positions of ids below `slots`; deleted vertices (valence 0) are skipped. marked: per
+  // id, not 0 where the vertex may have part in a meeting; NULL: all may. before: where the
+  // vertices were when no two faces met; NULL: all have moved. Returns the pairs (f, g), f < g, of
+  // faces that meet elsewhere than in what they share (triangle_intersection.h: exact, faces of
+  // zero area left out), both have a marked vertex, and one has a vertex that has moved; sorted,
+  // until the next call. The same for any executor. The mesh is closed and a manifold.
+  const Vector<FacePair>& find(const RingView& rings, uint32_t slots, const Packed* positions,
+                               const uint8_t* marked, const Executor& executor,
+                               const Packed* before = nullptr);
+
+  // The faces of the last call; none where nothing was marked.
+  size_t face_count() const { return face_count_; }
+  const uint32_t* face(uint32_t f) const { return faces_.data() + 3 * static_cast<size_t>(f); }
+
+ private:
+  static constexpr uint32_t kLanes = BoxLanes::kLanes;
+  // Level 0: leaves, nodes of faces; level k: nodes of nodes of level k - 1. Two levels at least.
+  struct Level {
+    Buffer<BoxLanes> boxes;
+    Buffer<uint8_t> moved;  // a bit per child: some face in it has
+  };
+  struct Mesh {
+    RingView rings;
+    uint32_t slots;
+    const Packed* positions;
+    const uint8_t* marks;
+    const Packed* before;
+    bool marked(uint32_t v) const { return marks == nullptr || marks[v] != 0; }
+    bool marked(const uint32_t* abc) const {
+      return marked(abc[0]) || marked(abc[1]) || marked(abc[2]);
+    }
+    bool moved(uint32_t v) const {
+      return before == nullptr || !same_four(load_four(positions[v]), load_four(before[v]));
+    }
+    bool moved(const uint32_t* abc) const {
+      return moved(abc[0]) || moved(abc[1]) || moved(abc[2]);
+    }
+  };
+  using Pairs = Vector<FacePair>;
+
+  static Box3 all_lanes(const BoxLanes& boxes);
+
+  void list_vertices(const Mesh& mesh);
+  void sort_vertices(uint32_t slots);
+  void list_faces(const Mesh& mesh, const Executor& executor);
+  void build_leaves(const Mesh& mesh, const Executor& executor);
+  void build_level(size_t level, const Executor& executor);
+  void search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) const;
+  struct Scratch {
+    Vector<uint32_t> near;  // nodes of leaves
+    Buffer<kernels::CandidatePair> candidates;
+  };
+  void find_near(uint32_t node, Vector<uint32_t>& near) const;
+  void search_leaves(const Mesh& mesh, uint32_t node, Scratch& scratch, Pairs& pairs) const;
+  uint32_t index_of(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) const;
+
+  SimdTarget simd_;
+  Spares<Scratch> scratches_;
+  Buffer<uint32_t> vertices_;  // ascending
+  Buffer<uint8_t> listed_;     // per vertex
+  size_t face_count_ = 0;
+  Buffer<uint32_t> faces_;
+  Buffer<uint32_t> begin_;  // per listed vertex, and one more
+  Buffer<uint32_t> block_faces_;
+  Vector<Level> levels_;
+  size_t level_count_ = 0;
+  Vector<Pairs> found_;
+  Pairs pairs_;
+};
+
+}  // namespace plc

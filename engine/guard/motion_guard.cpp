@@ -1,0 +1,69 @@
+#include "engine/guard/motion_guard.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "engine/base/blocks.h"
+#include "engine/base/constants.h"
+#include "kernels/ring_forces.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+void MotionGuard::find_folds(const Vector<uint32_t>& blocks) {
+  assert(std::is_sorted(blocks.begin(), blocks.end()));
+  assert(blocks.empty() || blocks.back() < mesh_.padded() / kRingLanes);
+  folds_.resize_uninitialized(mesh_.padded());
+  const Streams3& n = mesh_.normal;
+  run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {
+    const Blocks part = Blocks::of(blocks.data(), blocks.size(), begin, end);
+    kernels::turned_faces(simd_, mesh_.rings(), mesh_.packed.data(), part, n.x.data(), n.y.data(),
+                          n.z.data(), kRiskDot, folds_.data());
+    for (size_t i = 0; i < part.count; ++i) {
+      for (uint32_t v = part.begin(i); v < part.begin(i) + kRingLanes; ++v) {
+        const uint32_t near = mesh_.risk[v] & Mesh::kNearRisk;
+        mesh_.risk[v] = static_cast<uint8_t>(near | uint32_t{folds_[v]} * Mesh::kFoldRisk);
+      }
+    }
+  });
+}
+
+void MotionGuard::assess(const Vector<uint32_t>& due, const Vector<uint32_t>& at_risk) {
+  for (const uint32_t v : due) mesh_.risk[v] &= Mesh::kFoldRisk;
+  for (const uint32_t v : at_risk) mesh_.risk[v] |= Mesh::kNearRisk;
+}
+
+int64_t MotionGuard::take_back(const Buffer<Packed>& before, SpatialHash& hash,
+                               Vector<uint32_t>& back) {
+  int64_t taken_back = 0;
+  for (int64_t now = 1; now != 0; taken_back += now) {
+    now = 0;
+    const auto& pairs = search_.find(mesh_.rings(), mesh_.slots(), mesh_.packed.data(),
+                                     mesh_.risk.data(), executor_, before.data());
+    for (const auto& [f, g] : pairs) {
+      now += put_back(search_.face(f), before, hash, back) +
+             put_back(search_.face(g), before, hash, back);
+    }
+  }
+  return taken_back;
+}
+
+// Returns how many of the face's vertices were not where they had been.
+int64_t MotionGuard::put_back(const uint32_t* face, const Buffer<Packed>& before, SpatialHash& hash,
+                              Vector<uint32_t>& back) {
+  int64_t count = 0;
+  for (int i = 0; i < 3; ++i) {
+    const uint32_t v = face[i];
+    const Packed& b = before[v];
+    const Packed& p = mesh_.packed[v];
+    mesh_.velocity.set(v, {});
+    if (b.x == p.x && b.y == p.y && b.z == p.z) continue;
+    mesh_.place(v, {b.x, b.y, b.z});
+    hash.insert(v, mesh_.at(v));
+    back.push_back(v);
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace plc

@@ -1,0 +1,44 @@
+// Going past the paper: a movement that would make the surface meet itself is taken back.
+#pragma once
+#include <cstdint>
+
+#include "engine/detect/spatial_hash.h"
+#include "engine/guard/meeting_search.h"
+#include "engine/mesh/mesh.h"
+#include "kernels/simd.h"
+#include "pyramid/executor.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+// The surface before a movement does not meet itself. Where it does after it, the vertices of the
+// faces that meet go back to where they were and lose their speed; again, until none meet: in the
+// worst case all are back where they started. Only faces with a vertex at risk (risk.h) are tested,
+// against each other, and only where one of the two has moved.
+class MotionGuard {
+ public:
+  MotionGuard(Mesh& mesh, const Executor& executor, SimdTarget simd)
+      : mesh_(mesh), executor_(executor), simd_(simd), search_(simd) {}
+
+  // blocks: of kRingLanes vertices, with all that have moved and all their neighbours. Finds where
+  // the surface folds now, against the normals of the movement's start.
+  void find_folds(const Vector<uint32_t>& blocks);
+  // due: the vertices whose risk has been looked at anew; at_risk: those of all that it was found
+  // for (Surroundings). The others keep theirs.
+  void assess(const Vector<uint32_t>& due, const Vector<uint32_t>& at_risk);
+  // `before`: the positions before the movement, by id. The hash learns of the vertices that go
+  // back, which are appended to `back`. Returns how many went back.
+  int64_t take_back(const Buffer<Packed>& before, SpatialHash& hash, Vector<uint32_t>& back);
+
+ private:
+  int64_t put_back(const uint32_t* face, const Buffer<Packed>& before, SpatialHash& hash,
+                   Vector<uint32_t>& back);
+
+  Mesh& mesh_;
+  const Executor& executor_;
+  SimdTarget simd_;
+  Buffer<uint8_t> folds_;
+  MeetingSearch search_;
+};
+
+}  // namespace plc

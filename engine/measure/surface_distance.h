@@ -1,0 +1,30 @@
+// Distances from a mesh to the nearest points of another one's faces.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "pyramid/executor.h"
+
+namespace plc {
+
+// Borrowed arrays, as measures.h has them.
+struct MeshArrays {
+  const double* xyz;
+  size_t vertex_count;
+  const uint32_t* abc;
+  size_t face_count;
+};
+
+// As plc_distances has them.
+struct SurfaceDistances {
+  double mean, rms, max;
+  double vertex_mean, vertex_max;
+};
+
+// plc_mesh_distance says what is computed. `other` has a face; distance: one value per vertex of
+// mesh, or NULL. Five queries per face of mesh, of which each takes the logarithm of the other's
+// faces where the meshes are near each other. The same bits for any executor.
+SurfaceDistances surface_distances(const MeshArrays& mesh, const MeshArrays& other,
+                                   const Executor& executor, double* distance);
+
+}  // namespace plc

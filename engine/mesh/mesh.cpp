@@ -1,0 +1,336 @@
+#include "engine/mesh/mesh.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/blocks.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+namespace {
+
+// Tails come in powers of two from 16 up; class c holds 16 << c neighbours.
+uint32_t tail_class(uint32_t length) {
+  return static_cast<uint32_t>(std::countr_zero(std::bit_ceil(std::max(length, 16U)))) - 4;
+}
+
+[[maybe_unused]] bool distinct(const Vector<uint32_t>& ids, uint32_t below) {
+  std::vector<bool> seen(below);
+  return std::all_of(ids.begin(), ids.end(), [&](uint32_t v) {
+    if (v >= below || seen[v]) return false;
+    seen[v] = true;
+    return true;
+  });
+}
+
+// What a renumbered mesh has room for: ids are given anew when a sixteenth of them has been
+// created (recovery.cpp), many of them anew in place of deleted ones. Beyond it streams are copied
+// to half as much again.
+size_t with_room(size_t padded) {
+  return padded + padded / (2 * kRingLanes) / kRingLanes * kRingLanes;
+}
+
+// target: new, of `padded` elements: those of `source`, in this order, then zeros.
+template <typename T>
+void permute(const Buffer<T>& source, const Vector<uint32_t>& order, size_t padded,
+             Buffer<T>& target) {
+  target.reserve(with_room(padded));
+  target.resize_uninitialized(order.size());
+  for (size_t i = 0; i < order.size(); ++i) target[i] = source[order[i]];
+  target.resize(padded);
+}
+
+}  // namespace
+
+void Streams3::resize(size_t n, size_t room) {
+  for (Buffer<float>* stream : {&x, &y, &z}) {
+    stream->reserve(room);
+    stream->resize(n);
+  }
+}
+
+uint32_t Mesh::padded() const {
+  return (slots_ + kRingLanes - 1) / kRingLanes * kRingLanes;
+}
+
+bool Mesh::adjacent(uint32_t u, uint32_t v) const {
+  const uint32_t d = valence(u);
+  for (uint32_t k = 0; k < d; ++k) {
+    if (neighbor(u, k) == v) return true;
+  }
+  return false;
+}
+
+Neighbors Mesh::ring(uint32_t v) const {
+  Neighbors out;
+  const uint32_t d = valence(v);
+  out.resize(d);
+  uint32_t* to = out.data();
+  for (uint32_t k = 0; k < d; ++k) to[k] = neighbor(v, k);
+  return out;
+}
+
+void Mesh::place(uint32_t v, Vec3 p) {
+  assert(v < slots_);
+  packed[v] = {p.x, p.y, p.z, 0};
+  calm[v] = 0;
+}
+
+uint32_t Mesh::create(Vec3 p, Vec3 speed) {
+  ++created_;
+  uint32_t v = slots_;
+  if (!free_.empty()) {
+    v = free_.back();
+    free_.pop_back();
+  } else {
+    grow(uint64_t{slots_} + 1);
+  }
+  assert(!alive(v));
+  start_vertex(v);
+  place(v, p);
+  velocity.set(v, speed);
+  return v;
+}
+
+// Everything but its ring.
+void Mesh::start_vertex(uint32_t v) {
+  visit_streams(*this, [v](auto& stream) { stream[v] = {}; });
+  risk[v] = kNearRisk;
+  wake(v);
+}
+
+uint32_t Mesh::create_many(uint32_t count, uint32_t valence, const Executor& executor) {
+  constexpr size_t kBlock = 4096;
+  assert(free_.empty() && valence >= 3 && valence <= kRingSlots);
+  const uint32_t first = slots_;
+  grow(uint64_t{slots_} + count);
+  run_blocks(executor, count, kBlock, [&](size_t, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const auto v = static_cast<uint32_t>(first + i);
+      start_vertex(v);
+      valence_[v] = static_cast<uint16_t>(valence);
+    }
+  });
+  created_ += count;
+  alive_ += count;
+  return first;
+}
+
+void Mesh::destroy(uint32_t v) {
+  assert(alive(v));
+  set_valence(v, 0);
+  velocity.set(v, {});
+  normal.set(v, {});
+  displacement.set(v, {});
+  free_.push_back(v);
+}
+
+// Brings the tail in line with the new valence; the slots are not touched.
+void Mesh::set_valence(uint32_t v, uint32_t d) {
+  assert(v < slots_);
+  if (d > kMaxValence) {
+    throw std::length_error("a vertex would have " + std::to_string(d) + " neighbours");
+  }
+  const uint32_t old_tail = valence_[v] > kRingSlots ? valence_[v] - kRingSlots : 0;
+  const uint32_t new_tail = d > kRingSlots ? d - kRingSlots : 0;
+  const bool keep = old_tail != 0 && new_tail != 0 && tail_class(old_tail) == tail_class(new_tail);
+  if (!keep) {
+    if (old_tail != 0) free_tail(column(v, kRingSlots), old_tail);
+    if (new_tail != 0) column(v, kRingSlots) = allocate_tail(new_tail);
+  }
+  alive_ += static_cast<uint32_t>(d != 0) - static_cast<uint32_t>(valence_[v] != 0);
+  valence_[v] = static_cast<uint16_t>(d);
+  for (uint32_t k = d; k < kRingSlots; ++k) column(v, k) = v;
+}
+
+void Mesh::set_ring(uint32_t v, const Neighbors& ring) {
+  set_valence(v, ring.size());
+  exchange_ring(v, ring);
+}
+
+void Mesh::exchange_ring(uint32_t v, const Neighbors& ring) {
+  assert(ring.size() == valence(v));
+  const uint32_t* from = ring.data();
+  const uint32_t inline_count = std::min(ring.size(), kRingSlots);
+  for (uint32_t k = 0; k < inline_count; ++k) column(v, k) = from[k];
+  if (ring.size() > kRingSlots) {
+    std::copy(from + kRingSlots, from + ring.size(), tail_.data() + column(v, kRingSlots));
+  }
+}
+
+void Mesh::replace(uint32_t v, uint32_t old_neighbor, uint32_t new_neighbor) {
+  const uint32_t d = valence(v);
+  for (uint32_t k = 0; k < d; ++k) {
+    if (neighbor(v, k) != old_neighbor) continue;
+    if (k < kRingSlots) {
+      column(v, k) = new_neighbor;
+    } else {
+      tail_[column(v, kRingSlots) + k - kRingSlots] = new_neighbor;
+    }
+    return;
+  }
+  assert(false && "replace: no such neighbour");
+}
+
+void Mesh::replace(uint32_t v, uint32_t old_neighbor, uint32_t first, uint32_t second) {
+  Neighbors r = ring(v);
+  const uint32_t k = r.find(old_neighbor);
+  assert(k < r.size());
+  r[k] = first;
+  r.insert(k + 1, second);
+  set_ring(v, r);
+}
+
+void Mesh::insert_after(uint32_t v, uint32_t neighbor, uint32_t added) {
+  Neighbors r = ring(v);
+  assert(r.contains(neighbor));
+  r.insert(r.find(neighbor) + 1, added);
+  set_ring(v, r);
+}
+
+void Mesh::remove(uint32_t v, uint32_t neighbor) {
+  Neighbors r = ring(v);
+  assert(r.contains(neighbor));
+  r.erase(r.find(neighbor));
+  set_ring(v, r);
+}
+
+void Mesh::clear() {
+  Mesh empty;
+  empty.delta = delta;
+  empty.most_vertices = most_vertices;
+  empty.most_neighbors = most_neighbors;
+  *this = std::move(empty);
+}
+
+void Mesh::reserve(uint64_t vertices) {
+  const uint32_t keep = slots_;
+  grow(std::max<uint64_t>(vertices, slots_));
+  slots_ = keep;
+}
+
+void Mesh::grow(uint64_t slots) {
+  if (slots > most_vertices) throw TooManyVertices();
+  slots_ = static_cast<uint32_t>(slots);
+  const size_t n = padded();
+  if (n <= valence_.size()) return;
+  const size_t old = valence_.size();
+  visit_streams(*this, [n](auto& stream) { stream.resize(n); });
+  columns_.resize(n * kRingColumns);
+  valence_.resize(n);
+  refresh_view();
+  for (size_t v = old; v < n; ++v) {
+    for (uint32_t k = 0; k < kRingSlots; ++k) {
+      column(static_cast<uint32_t>(v), k) = static_cast<uint32_t>(v);
+    }
+  }
+}
+
+uint32_t Mesh::allocate_tail(uint32_t length) {
+  auto& free = free_tails_[tail_class(length)];
+  if (!free.empty()) {
+    const uint32_t offset = free.back();
+    free.pop_back();
+    return offset;
+  }
+  const size_t offset = tail_.size();
+  const size_t end = offset + (16U << tail_class(length));
+  if (end > std::numeric_limits<uint32_t>::max()) throw TooManyVertices();
+  tail_.resize(end);
+  refresh_view();
+  return static_cast<uint32_t>(offset);
+}
+
+void Mesh::free_tail(uint32_t offset, uint32_t length) {
+  free_tails_[tail_class(length)].push_back(offset);
+}
+
+void Mesh::renumber(const Vector<uint32_t>& order, const Executor& executor) {
+  assert(order.size() == alive_ && distinct(order, slots_));
+  Mesh to;
+  to.delta = delta;
+  to.most_vertices = most_vertices;
+  to.most_neighbors = most_neighbors;
+  to.slots_ = to.alive_ = static_cast<uint32_t>(order.size());
+  carry_rings(order, to, executor);
+  std::vector<std::function<void()>> streams;
+  visit_streams(to, *this, [&](auto& target, auto& source) {
+    streams.emplace_back([&] {
+      permute(source, order, to.padded(), target);
+      source = {};
+    });
+  });
+  executor.run(streams.size(), [&](size_t stream) { streams[stream](); });
+  *this = std::move(to);
+  refresh_view();
+}
+
+// `to` is new.
+void Mesh::carry_rings(const Vector<uint32_t>& order, Mesh& to, const Executor& executor) const {
+  constexpr size_t kBlock = 4096;
+  Vector<uint32_t> new_id(slots_);
+  run_blocks(executor, order.size(), kBlock, [&](size_t, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) new_id[order[i]] = static_cast<uint32_t>(i);
+  });
+  const size_t padded = to.padded();
+  to.valence_.reserve(with_room(padded));
+  to.valence_.resize_uninitialized(padded);
+  to.columns_.reserve(with_room(padded) * kRingColumns);
+  to.columns_.resize_uninitialized(padded * kRingColumns);
+  to.refresh_view();
+  run_blocks(executor, padded, kBlock, [&](size_t, size_t begin, size_t end) {
+    for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
+      const uint32_t known = v < order.size() ? valence_[order[v]] : 0;
+      const uint32_t d = known <= kRingSlots ? known : 0;
+      to.valence_[v] = static_cast<uint16_t>(d);
+      for (uint32_t k = 0; k < d; ++k) to.column(v, k) = new_id[neighbor(order[v], k)];
+      for (uint32_t k = d; k < kRingSlots; ++k) to.column(v, k) = v;
+      to.column(v, kRingSlots) = 0;
+    }
+  });
+  // Tails share an arena.
+  for (uint32_t i = 0; i < order.size(); ++i) {
+    if (valence_[order[i]] <= kRingSlots) continue;
+    Neighbors r = ring(order[i]);
+    for (uint32_t k = 0; k < r.size(); ++k) r[k] = new_id[r[k]];
+    --to.alive_;
+    to.set_ring(i, r);
+  }
+}
+
+Vector<uint32_t> Mesh::faces() const {
+  Vector<uint32_t> out;
+  out.reserve(static_cast<size_t>(alive_) * 6);
+  for (uint32_t v = 0; v < slots_; ++v) {
+    const uint32_t d = valence(v);
+    for (uint32_t k = 0; k < d; ++k) {
+      const uint32_t a = neighbor(v, k);
+      const uint32_t b = neighbor(v, k + 1 == d ? 0 : k + 1);
+      if (v < a && v < b) out.insert(out.end(), {v, a, b});
+    }
+  }
+  return out;
+}
+
+Mesh Mesh::copy() const {
+  Mesh to(*this);
+  to.refresh_view();
+  return to;
+}
+
+uint64_t Mesh::bytes() const {
+  const auto of = [](const auto& b) { return b.capacity() * sizeof(b[0]); };
+  uint64_t sum = of(columns_) + of(valence_) + of(tail_);
+  visit_streams(*this, [&](const auto& stream) { sum += of(stream); });
+  return sum;
+}
+
+}  // namespace plc

@@ -1,0 +1,212 @@
+// The triangulated mesh (3.1): structure-of-arrays vertex streams and oriented neighbour rings.
+#pragma once
+#include <array>
+#include <cassert>
+#include <cstdint>
+#include <new>
+
+#include "engine/base/vec3.h"
+#include "engine/mesh/neighbors.h"
+#include "kernels/ring.h"
+#include "pyramid/buffer.h"
+#include "pyramid/executor.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+class StateReader;
+class StateWriter;
+
+// Ids up to which the engine's buffers can be indexed: 12 columns per vertex within 32 bits.
+inline constexpr uint32_t kMaxMeshVertices =
+    static_cast<uint32_t>((uint64_t{1} << 32) / kRingColumns - kRingLanes);
+// Valences are 16 bit.
+inline constexpr uint32_t kMaxValence = 65535;
+
+// Thrown before there would be more ids than the mesh may have, or more neighbours beyond the
+// columns than can be indexed.
+class TooManyVertices : public std::bad_alloc {
+ public:
+  const char* what() const noexcept override { return "too many vertices"; }
+};
+
+// Three float streams of one vector quantity, 12 bytes per vertex.
+struct Streams3 {
+  Buffer<float> x, y, z;
+  // room: for so many, from now on.
+  void resize(size_t n, size_t room = 0);
+  Vec3 at(uint32_t v) const { return {x[v], y[v], z[v]}; }
+  void set(uint32_t v, Vec3 a) { x[v] = a.x, y[v] = a.y, z[v] = a.z; }
+};
+
+// Vertices have dense ids 0 .. slots()-1; a deleted one has valence 0 and waits in the free list.
+// All streams are 64-byte aligned and padded to whole blocks of kRingLanes vertices.
+//
+//   stream         bytes  unit          written by
+//   packed         16     mesh units    position: move, transformations; a record, as it is fetched
+//                                       by neighbour index
+//   velocity       12     per time      move, transformations
+//   normal         12     1             normals
+//   displacement   12     mesh units    stages, move
+//   path           4      mesh units    move; reset when the constraints of v are checked
+//   idle           1      iterations    since the constraints of v were checked
+//   calm           1      iterations    sleep.h: for how long v has been calm, up to 255
+//   stir           1      1/256 of      sleep.h: movement along the normal since v last woke its
+//                         kWakeMove     neighbours
+//   risk           1      flags         motion guard: the surface is near or folded here (risk.h)
+//   operations     1      count         resolution, in this iteration
+//   cut            4+4    id, iteration annular: which cut made v, and when (exemption from (3))
+//   rings          48+2   id            transformations (kernels/ring.h)
+//
+// Coordinates are of the mesh space: voxels of I_0 (method 2 of 4.4) or mm over U_0 (method 1).
+// Not thread-safe; distinct vertices may be written concurrently where a pass says so.
+class Mesh {
+ public:
+  Mesh() = default;
+  // Copies are made by copy() alone: their view is of their own rings.
+  Mesh(Mesh&&) = default;
+  Mesh& operator=(Mesh&&) = default;
+
+  Streams3 velocity, normal, displacement;
+  Buffer<Packed> packed;
+  Buffer<float> path;
+  Buffer<uint8_t> idle;
+  Buffer<uint8_t> calm, stir;
+  Buffer<uint8_t> risk;
+  Buffer<uint8_t> operations;
+  Buffer<uint32_t> cut_id;
+  Buffer<uint32_t> cut_iteration;
+
+  // The invariant of (1)-(3), mesh units.
+  double delta = 1;
+
+  // Ids are below the first. No vertex gets more neighbours than the second: transformations that
+  // would give it more are refused (resolution.h).
+  uint32_t most_vertices = kMaxMeshVertices;
+  uint32_t most_neighbors = kMaxValence;
+
+  uint32_t slots() const { return slots_; }         // ids are below this
+  uint32_t padded() const;                          // slots, up to whole blocks
+  uint32_t vertex_count() const { return alive_; }  // not deleted
+  // Slots there is memory for: more are had by copying all streams.
+  size_t room() const { return valence_.capacity(); }
+  bool alive(uint32_t v) const { return valence(v) != 0; }
+  uint32_t valence(uint32_t v) const {
+    assert(v < slots_);
+    return valence_[v];
+  }
+  uint32_t neighbor(uint32_t v, uint32_t k) const {
+    assert(k < valence(v));
+    return view_.slot(v, k);
+  }
+  bool adjacent(uint32_t u, uint32_t v) const;
+  RingView rings() const { return view_; }
+  Neighbors ring(uint32_t v) const;
+  Vec3 at(uint32_t v) const {
+    assert(v < slots_);
+    return {packed[v].x, packed[v].y, packed[v].z};
+  }
+
+  void place(uint32_t v, Vec3 p);
+  // Takes an id from the free list (last freed first) or a new one, or throws TooManyVertices; its
+  // ring is still empty, it counts as alive from set_ring on, and it is due for a check.
+  uint32_t create(Vec3 p, Vec3 velocity);
+  // New ids that follow one another, at the origin, at rest and due for a check. They are alive at
+  // once: each gets its ring, of this valence, by exchange_ring(). 3 <= valence <= kRingSlots. Only
+  // where no vertex has been deleted. Throws TooManyVertices.
+  uint32_t create_many(uint32_t count, uint32_t valence, const Executor& executor);
+  void destroy(uint32_t v);
+  void set_ring(uint32_t v, const Neighbors& ring);
+  // As many neighbours as v has. Distinct vertices may be written concurrently.
+  void exchange_ring(uint32_t v, const Neighbors& ring);
+  // Edits of one ring that the transformations are made of.
+  void replace(uint32_t v, uint32_t old_neighbor, uint32_t new_neighbor);
+  void replace(uint32_t v, uint32_t old_neighbor, uint32_t first, uint32_t second);
+  void insert_after(uint32_t v, uint32_t neighbor, uint32_t added);
+  void remove(uint32_t v, uint32_t neighbor);
+
+  // Makes every constraint of v be checked at the next opportunity; v does not sleep.
+  void wake(uint32_t v) {
+    idle[v] = kAwake;
+    calm[v] = 0;
+  }
+  static constexpr uint8_t kAwake = 255;
+  // Bits of risk (risk.h): other parts of the surface are near v; the surface is folded around v.
+  static constexpr uint8_t kNearRisk = 1;
+  static constexpr uint8_t kFoldRisk = 2;
+
+  void clear();
+  void reserve(uint64_t vertices);  // throws TooManyVertices
+  // Vertices created since the ids were last renumbered: how far ids have strayed from space order.
+  uint32_t created() const { return created_; }
+  // No id was created or freed since then.
+  bool in_order() const { return created_ == 0 && alive_ == slots_; }
+  // Of deleted vertices; create() takes the last one.
+  const Vector<uint32_t>& free_ids() const { return free_; }
+  // New ids: new id = rank of v in `order`, which lists every living vertex once. Nothing but the
+  // ids changes.
+  void renumber(const Vector<uint32_t>& order, const Executor& executor = SerialExecutor());
+  // Triples (v, r[i], r[i+1]) with v the smallest id, in order of v, then of the ring.
+  Vector<uint32_t> faces() const;
+  uint64_t bytes() const;
+  Mesh copy() const;
+
+  // All of it but the places of tails in their arena (mesh_state.cpp). restore() replaces what is
+  // there; false where what is read is no mesh that holds its invariants: it is then of no use.
+  void save(StateWriter& to) const;
+  bool restore(StateReader& from);
+
+ private:
+  Mesh(const Mesh&) = default;
+  // visit(stream of a, stream of b) for every stream of the vertices but the rings.
+  template <typename A, typename B, typename Visit>
+  static void visit_streams(A& a, B& b, const Visit& visit);
+  template <typename Self, typename Visit>
+  static void visit_streams(Self& mesh, const Visit& visit) {
+    visit_streams(mesh, mesh, [&](auto& stream, auto&) { visit(stream); });
+  }
+  void start_vertex(uint32_t v);
+  bool restore_rings(StateReader& from);
+  void grow(uint64_t slots);
+  void carry_rings(const Vector<uint32_t>& order, Mesh& to, const Executor& executor) const;
+  void set_valence(uint32_t v, uint32_t valence);
+  uint32_t& column(uint32_t v, uint32_t k) {
+    return columns_[(v / kRingLanes * kRingColumns + k) * kRingLanes + v % kRingLanes];
+  }
+  uint32_t allocate_tail(uint32_t length);
+  void free_tail(uint32_t offset, uint32_t length);
+  void refresh_view() { view_ = {columns_.data(), valence_.data(), tail_.data()}; }
+
+  uint32_t slots_ = 0;
+  uint32_t alive_ = 0;
+  uint32_t created_ = 0;
+  Buffer<uint32_t> columns_;
+  Buffer<uint16_t> valence_;
+  Buffer<uint32_t> tail_;
+  std::array<Vector<uint32_t>, 16> free_tails_;  // by size class
+  Vector<uint32_t> free_;
+  RingView view_;
+};
+
+template <typename A, typename B, typename Visit>
+void Mesh::visit_streams(A& a, B& b, const Visit& visit) {
+  const auto visit3 = [&](auto& s, auto& t) {
+    visit(s.x, t.x);
+    visit(s.y, t.y);
+    visit(s.z, t.z);
+  };
+  visit3(a.velocity, b.velocity);
+  visit3(a.normal, b.normal);
+  visit3(a.displacement, b.displacement);
+  visit(a.packed, b.packed);
+  visit(a.path, b.path);
+  visit(a.idle, b.idle);
+  visit(a.calm, b.calm);
+  visit(a.stir, b.stir);
+  visit(a.risk, b.risk);
+  visit(a.operations, b.operations);
+  visit(a.cut_id, b.cut_id);
+  visit(a.cut_iteration, b.cut_iteration);
+}
+
+}  // namespace plc

@@ -1,0 +1,412 @@
+#include "engine/motion/dynamics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/base/blocks.h"
+#include "engine/base/constants.h"
+#include "kernels/gradient_force.h"
+#include "kernels/image_force.h"
+#include "kernels/ring_forces.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+namespace {
+
+bool stretched(const Metric& m) {
+  return m.x != 1 || m.y != 1 || m.z != 1;
+}
+
+kernels::Float3s raw(Streams3& s) {
+  return {s.x.data(), s.y.data(), s.z.data()};
+}
+kernels::ConstFloat3s raw(const Streams3& s) {
+  return {s.x.data(), s.y.data(), s.z.data()};
+}
+
+// body(begin, end) for every run of successive blocks.
+template <typename Body>
+void split_runs(const Blocks& blocks, const Body& body) {
+  for (size_t i = 0; i < blocks.count;) {
+    const uint32_t begin = blocks.begin(i);
+    uint32_t end = begin;
+    for (; i < blocks.count && blocks.begin(i) == end; ++i) end += kRingLanes;
+    body(begin, end);
+  }
+}
+
+}  // namespace
+
+// (8) changes by at most 2 over U_h, and U_h is kUnitPerDelta delta.
+float stable_time_step(const Model& model, float stiffness) {
+  const double gradient =
+      std::max(std::abs(model.gradient_normal), std::abs(model.gradient_tangent));
+  const double stiffest = 2.6 * static_cast<double>(model.curvature) +
+                          12.0 * static_cast<double>(model.spring) +
+                          std::abs(static_cast<double>(model.attraction)) +
+                          2 / kUnitPerDelta * gradient + static_cast<double>(stiffness);
+  const double mass = static_cast<double>(model.mass);
+  const double longest = kStableFrequency * std::sqrt(mass / stiffest);
+  const double damped = kStableDecay * mass / static_cast<double>(model.damping);
+  return std::min(model.time_step, static_cast<float>(std::min(longest, damped)));
+}
+
+Dynamics::Dynamics(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model)
+    : mesh_(mesh),
+      schedule_(schedule),
+      simd_(simd),
+      model_(model),
+      time_step_(stable_time_step(model)) {}
+
+void Dynamics::resize(const Guide& guide) {
+  const size_t n = mesh_.padded(), room = mesh_.room();
+  for (Streams3* s : {&speed_, &rate_}) s->resize(n, room);
+  laplacian_.reserve(room);
+  laplacian_.resize(n);
+  // As many as the mesh has: they are swapped.
+  for (Buffer<Packed>& b : stage_) {
+    b.reserve(room);
+    b.resize(mesh_.packed.size());
+  }
+  if (!only_surface_forces(guide)) force_.resize(n);
+  if (!stretched(guide.metric)) return;
+  for (Streams3* s : {&metric_normal_, &metric_step_}) s->resize(n);
+}
+
+// Neighbours read the positions and Laplacians of blocks that sleep: they are the same in the mesh
+// and both stages, and those of when it fell asleep.
+void Dynamics::choose_blocks(const Sleep* sleep) {
+  if (sleep == nullptr) {
+    blocks_.resize(mesh_.padded() / kRingLanes);
+    std::iota(blocks_.begin(), blocks_.end(), 0U);
+  } else {
+    blocks_ = sleep->awake();
+    const Blocks fallen{sleep->fallen().data(), sleep->fallen().size()};
+    split_runs(fallen, [&](uint32_t begin, uint32_t end) {
+      for (Buffer<Packed>& stage : stage_) {
+        std::copy(mesh_.packed.begin() + begin, mesh_.packed.begin() + end, stage.begin() + begin);
+      }
+    });
+    kernels::laplacian(simd_, mesh_.rings(), mesh_.packed.data(), fallen, laplacian_.data());
+  }
+  movement_.assign(tasks(), {});
+}
+
+size_t Dynamics::tasks() const {
+  return (blocks_.size() + kTaskBlocks - 1) / kTaskBlocks;
+}
+
+Blocks Dynamics::task(size_t index) const {
+  const size_t begin = index * kTaskBlocks;
+  const size_t end = std::min(begin + kTaskBlocks, blocks_.size());
+  return Blocks::of(blocks_.data(), blocks_.size(), begin, end);
+}
+
+void Dynamics::for_tasks(const std::function<void(size_t, const Blocks&)>& body) const {
+  schedule_.run(tasks(), [&](size_t i) { body(i, task(i)); });
+}
+
+void Dynamics::for_runs(const std::function<void(uint32_t, uint32_t)>& body) const {
+  for_tasks([&](size_t, const Blocks& blocks) { split_runs(blocks, body); });
+}
+
+bool Dynamics::only_surface_forces(const Guide& guide) const {
+  return model_.curvature > 0 && model_.attraction != 0 && model_.spring <= 0 &&
+         guide.gradient.data == nullptr &&
+         (guide.user == nullptr || (guide.user->attachments.empty() && !guide.user->force));
+}
+
+bool Dynamics::moves_at_once(const Guide& guide) const {
+  return only_surface_forces(guide) && model_.bound == Bound::kClamp &&
+         (guide.user == nullptr || guide.user->pins.empty());
+}
+
+Status Dynamics::step(const Guide& guide, Seconds& seconds, const Sleep* sleep,
+                      const PassEnd& after) {
+  resize(guide);
+  choose_blocks(sleep);
+  const bool user_force = guide.user != nullptr && guide.user->force;
+  time_step_ = stable_time_step(model_, guide.user == nullptr ? 0 : guide.user->stiffness());
+  status_ = {};
+  // In order, the user's force is called on the calling thread.
+  schedule_.run_passes(passes(guide, seconds), user_force || tasks() <= 1, after);
+  if (status_.ok()) end_step();
+  return status_;
+}
+
+void Dynamics::save(StateWriter& to) const {
+  to.add(energy_);
+  to.add(speed_of_fastest_);
+  to.add_all(laplacian_);
+}
+
+void Dynamics::restore(StateReader& from) {
+  from.read(energy_);
+  from.read(speed_of_fastest_);
+  from.read_all(laplacian_);
+  for (Buffer<Packed>& b : stage_) b = mesh_.packed;
+}
+
+std::vector<Pass> Dynamics::passes(const Guide& guide, Seconds& seconds) {
+  std::vector<Pass> table;
+  table.push_back({"normals", kRings | kPositions, kNormals | kLaplacians, &seconds.normals,
+                   [this, guide] { normals(guide); }});
+  if (model_.spring > 0) {
+    table.push_back({"rest length", kRings | kPositions, kRestLength, &seconds.dynamics,
+                     [this, guide] { measure_rest_length(guide); }});
+  }
+  for (int stage = 0; stage < 4; ++stage) add_stage(stage, guide, seconds, table);
+  if (moves_at_once(guide)) return table;
+  table.push_back({"bound", kRings | kPositions | kNormals | kRestLength,
+                   kDisplacements | kStages | kLaplacians, &seconds.dynamics, [this, guide] {
+                     if (model_.bound == Bound::kScale) scale_time_step(guide);
+                     if (guide.user != nullptr && !guide.user->pins.empty()) hold_pinned(guide);
+                   }});
+  table.push_back({"move", kDisplacements | kNormals, kPositions | kVelocities | kEnergy,
+                   &seconds.dynamics, [this] { move(); }});
+  return table;
+}
+
+void Dynamics::add_stage(int stage, const Guide& guide, Seconds& seconds,
+                         std::vector<Pass>& table) {
+  const auto numbered = [stage](std::string name) { return name += std::to_string(stage + 1); };
+  if (model_.curvature > 0 && stage > 0) {
+    table.push_back({numbered("laplacian "), kRings | kPositions | kStages, kLaplacians,
+                     &seconds.dynamics, [this, stage] { laplacians(stage); }});
+  }
+  if (guide.user != nullptr && guide.user->force) {
+    table.push_back({numbered("user force "), kRings | kPositions | kNormals | kStages, kUserForce,
+                     &seconds.dynamics, [this, stage, guide] { user_force(stage, guide); }});
+  }
+  constexpr uint32_t kRead =
+      kRings | kPositions | kVelocities | kNormals | kRestLength | kLaplacians | kUserForce;
+  if (stage == 3 && moves_at_once(guide)) {
+    table.push_back({"stage 4 and move", kRead,
+                     kStages | kDisplacements | kPositions | kVelocities | kEnergy,
+                     &seconds.dynamics, [this, guide] { last_stage_and_move(guide); }});
+    return;
+  }
+  table.push_back({numbered("stage "), kRead, kStages | kDisplacements, &seconds.dynamics,
+                   [this, stage, guide] { run_stage(stage, guide); }});
+}
+
+// With the Laplacians of the first stage, which walk the same rings.
+void Dynamics::normals(const Guide& guide) {
+  const kernels::Float3s n = raw(mesh_.normal);
+  const Packed* position = mesh_.packed.data();
+  for_tasks([&](size_t, const Blocks& blocks) {
+    if (model_.curvature > 0) {
+      kernels::normals_and_laplacian(simd_, mesh_.rings(), position, blocks, n.x, n.y, n.z,
+                                     laplacian_.data());
+    } else {
+      kernels::normals(simd_, mesh_.rings(), position, blocks, n.x, n.y, n.z);
+    }
+    if (!stretched(guide.metric)) return;
+    const kernels::Float3s m = raw(metric_normal_);
+    const kernels::Float3s step = raw(metric_step_);
+    split_runs(blocks, [&](uint32_t begin, uint32_t end) {
+      kernels::metric_normals(simd_, guide.metric, n.x, n.y, n.z, begin, end, m.x, m.y, m.z, step.x,
+                              step.y, step.z);
+    });
+  });
+}
+
+void Dynamics::user_force(int stage, const Guide& guide) {
+  user_force_.resize(mesh_.padded());
+  for (Buffer<float>* f : {&user_force_.x, &user_force_.y, &user_force_.z}) {
+    std::fill(f->begin(), f->end(), 0.0F);
+  }
+  if (status_.ok()) status_ = guide.user->force(mesh_, stage_position(stage), user_force_);
+}
+
+void Dynamics::laplacians(int stage) {
+  for_tasks([this, stage](size_t, const Blocks& blocks) {
+    kernels::laplacian(simd_, mesh_.rings(), stage_position(stage), blocks, laplacian_.data());
+  });
+}
+
+void Dynamics::run_stage(int stage, const Guide& guide) {
+  const bool fused = only_surface_forces(guide);
+  for_tasks([&](size_t, const Blocks& blocks) {
+    if (fused) {
+      kernels::guided_stage(simd_, stage, coefficients(), surface_forces(stage, guide),
+                            streams(stage), blocks);
+      return;
+    }
+    split_runs(blocks,
+               [&](uint32_t begin, uint32_t end) { gather_forces(stage, guide, begin, end); });
+    kernels::rk4_stage(simd_, stage, coefficients(), streams(stage), raw(std::as_const(force_)),
+                       blocks);
+  });
+}
+
+void Dynamics::last_stage_and_move(const Guide& guide) {
+  for_tasks([&](size_t index, const Blocks& blocks) {
+    movement_[index] = kernels::guided_move(simd_, coefficients(), surface_forces(3, guide),
+                                            streams(3), move_bound(), move_streams(), blocks);
+  });
+}
+
+// The position of stage s: that of the mesh, then what stage s - 1 wrote.
+const Packed* Dynamics::stage_position(int stage) const {
+  return stage == 0 ? mesh_.packed.data() : stage_[stage % 2].data();
+}
+
+void Dynamics::gather_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end) {
+  const auto& [fx, fy, fz] = raw(force_);
+  if (model_.curvature > 0) {
+    kernels::curvature_force(simd_, mesh_.rings(), laplacian_.data(), model_.curvature, begin, end,
+                             fx, fy, fz);
+  } else {
+    for (float* f : {fx, fy, fz}) std::fill(f + begin, f + end, 0.0F);
+  }
+  if (model_.spring > 0) {
+    kernels::spring_force(simd_, mesh_.rings(), stage_position(stage), model_.spring, rest_length_,
+                          guide.metric, begin, end, fx, fy, fz);
+  }
+  image_forces(stage, guide, begin, end);
+  if (guide.user == nullptr) return;
+  const Motion motion{stage == 0 ? mesh_.velocity : speed_, model_.mass, model_.damping};
+  attach(*guide.user, motion, stage_position(stage), mesh_.normal, begin, end, force_);
+  if (!guide.user->force) return;
+  for (uint32_t v = begin; v < end; ++v) force_.set(v, force_.at(v) + user_force_.at(v));
+}
+
+// (7) and (8), both normalised by delta (3.8).
+void Dynamics::image_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end) {
+  const auto& [fx, fy, fz] = raw(force_);
+  const auto delta = static_cast<float>(mesh_.delta);
+  if (model_.attraction != 0) {
+    const auto& [nx, ny, nz] = raw(image_normal(guide));
+    kernels::iso_force(simd_, guide.image, stage_position(stage), nx, ny, nz,
+                       delta * model_.attraction, guide.iso, begin, end, fx, fy, fz);
+  }
+  if (guide.gradient.data != nullptr) {
+    const auto& [nx, ny, nz] =
+        raw(std::as_const(stretched(guide.metric) ? metric_normal_ : mesh_.normal));
+    const Metric& m = guide.metric;
+    kernels::gradient_force(simd_, guide.gradient, stage_position(stage), nx, ny, nz,
+                            delta * model_.gradient_normal, delta * model_.gradient_tangent,
+                            {1 / m.x, 1 / m.y, 1 / m.z}, begin, end, fx, fy, fz);
+  }
+}
+
+const Streams3& Dynamics::image_normal(const Guide& guide) const {
+  return stretched(guide.metric) ? metric_step_ : mesh_.normal;
+}
+
+kernels::Rk4Coefficients Dynamics::coefficients() const {
+  return {1.0F / model_.mass, model_.damping, time_step_};
+}
+
+kernels::Rk4Streams Dynamics::streams(int stage) {
+  return {mesh_.packed.data(), raw(std::as_const(mesh_.velocity)),
+          raw(speed_),         raw(mesh_.displacement),
+          raw(rate_),          stage_[(stage + 1) % 2].data()};
+}
+
+kernels::SurfaceForces Dynamics::surface_forces(int stage, const Guide& guide) const {
+  return {mesh_.rings(),
+          laplacian_.data(),
+          model_.curvature,
+          guide.image,
+          stage_position(stage),
+          raw(image_normal(guide)),
+          static_cast<float>(mesh_.delta) * model_.attraction,
+          guide.iso};
+}
+
+// The last stage reads its positions from the other buffer.
+kernels::MoveStreams Dynamics::move_streams() {
+  return {mesh_.packed.data(), stage_[0].data(), raw(mesh_.velocity),
+          raw(std::as_const(mesh_.normal)), mesh_.path.data()};
+}
+
+kernels::MoveBound Dynamics::move_bound() const {
+  const float longest = model_.max_move * static_cast<float>(mesh_.delta);
+  return {longest, longest / time_step_};
+}
+
+void Dynamics::measure_rest_length(const Guide& guide) {
+  rest_length_ = 0;
+  if (model_.rest_length == RestLength::kZero) return;
+  if (model_.rest_length == RestLength::kValue) {
+    rest_length_ = model_.rest_length_value * static_cast<float>(mesh_.delta);
+    return;
+  }
+  // Of the whole mesh, whatever sleeps.
+  Vector<double> part(block_count(mesh_.padded(), kGrain));
+  run_blocks(schedule_, mesh_.padded(), kGrain, [&](size_t index, size_t begin, size_t end) {
+    part[index] =
+        kernels::edge_length_sum(simd_, mesh_.rings(), mesh_.packed.data(), guide.metric,
+                                 static_cast<uint32_t>(begin), static_cast<uint32_t>(end));
+  });
+  const double sum = std::accumulate(part.begin(), part.end(), 0.0);
+  // Twice the edges of a closed mesh: the sum of the valences.
+  uint64_t ends = 0;
+  for (uint32_t v = 0; v < mesh_.slots(); ++v) ends += mesh_.valence(v);
+  rest_length_ = ends == 0 ? 0 : static_cast<float>(sum / static_cast<double>(ends));
+}
+
+// The longest displacement of this step.
+float Dynamics::longest_move() const {
+  Vector<float> part(tasks(), 0.0F);
+  for_tasks([&](size_t index, const Blocks& blocks) {
+    part[index] = kernels::max_squared(simd_, raw(std::as_const(mesh_.displacement)), blocks);
+  });
+  return part.empty() ? 0.0F : std::sqrt(*std::max_element(part.begin(), part.end()));
+}
+
+// Second method of 3.6: the displacement is about linear in the time step, so again with a shorter
+// one until the fastest vertex is within the bound; what is left is clamped.
+void Dynamics::scale_time_step(const Guide& guide) {
+  constexpr int kTries = 8;
+  const float longest = move_bound().length;
+  for (int i = 0; i < kTries; ++i) {
+    const float moved = longest_move();
+    if (moved <= longest) return;
+    time_step_ = time_step_ * (longest / moved) * 0.95F;
+    for (int stage = 0; stage < 4; ++stage) {
+      if (model_.curvature > 0) laplacians(stage);
+      if (guide.user != nullptr && guide.user->force) user_force(stage, guide);
+      run_stage(stage, guide);
+    }
+  }
+}
+
+void Dynamics::hold_pinned(const Guide& guide) {
+  for_runs([&](uint32_t begin, uint32_t end) {
+    for (uint32_t v = begin; v < std::min(end, mesh_.slots()); ++v) {
+      if (!pinned(*guide.user, mesh_.at(v))) continue;
+      mesh_.displacement.set(v, {});
+      rate_.set(v, {});
+    }
+  });
+}
+
+void Dynamics::move() {
+  if (!status_.ok()) return;
+  for_tasks([&](size_t index, const Blocks& blocks) {
+    movement_[index] = kernels::move(simd_, move_bound(), raw(mesh_.displacement),
+                                     raw(std::as_const(rate_)), move_streams(), blocks);
+  });
+}
+
+// The positions are what was moved to, and the energy what was measured on the way.
+void Dynamics::end_step() {
+  mesh_.packed.swap(stage_[0]);
+  double sum = 0;
+  float longest2 = 0;
+  for (const kernels::Movement& m : movement_) {
+    sum += m.energy;
+    longest2 = std::max(longest2, m.longest2);
+  }
+  const double scale = mesh_.delta * static_cast<double>(time_step_);
+  const double count = std::max(1.0, static_cast<double>(mesh_.vertex_count()));
+  energy_ = static_cast<double>(model_.mass) * sum / (2 * count * scale * scale);
+  speed_of_fastest_ = static_cast<double>(std::sqrt(longest2)) / scale;
+}
+
+}  // namespace plc

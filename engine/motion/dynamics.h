@@ -1,0 +1,138 @@
+// Forces, Newton's law of motion by Runge-Kutta 4, movement bound and energy (3.5-3.8, 5.1).
+#pragma once
+#include <vector>
+
+#include "engine/base/schedule.h"
+#include "engine/base/state_io.h"
+#include "engine/base/statistics.h"
+#include "engine/mesh/mesh.h"
+#include "engine/mesh/state_hash.h"
+#include "engine/motion/guide.h"
+#include "engine/motion/sleep.h"
+#include "kernels/blocks.h"
+#include "kernels/guided_stage.h"
+#include "kernels/integrate.h"
+#include "kernels/simd.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+enum class RestLength { kZero, kMean, kValue };
+enum class Bound { kClamp, kScale };
+
+// The model's coefficients, validated; see plc_parameters for units and ranges.
+struct Model {
+  float curvature = 0.4F;  // alpha_c
+  float spring = 0;        // alpha_e
+  RestLength rest_length = RestLength::kMean;
+  float rest_length_value = 0;  // in delta
+  float attraction = -1;        // alpha_I, negative when the object is bright; 0: no iso force
+  float gradient_normal = 0;    // alpha_gradI (8)
+  float gradient_tangent = 0;   // beta_gradI (8)
+  float mass = 1;
+  float damping = 0.5F;
+  float time_step = 1;
+  float max_move = 0.4F;  // in delta
+  Bound bound = Bound::kClamp;
+};
+
+// The largest time step, at most the model's, that RK4 takes stably (constants.h), with
+// `stiffness` added to that of the model's forces.
+float stable_time_step(const Model& model, float stiffness = 0);
+
+// The movement part of one iteration. Owns the streams that live within a step:
+//
+//   stream     bytes  written by
+//   speed      12     stages: velocity of the stage
+//   rate       12     stages: sum of accelerations; the new velocity where a pass lies between the
+//                     last stage and the move
+//   stage      2x16   stages: position of the stage, read and written in turn; then one is the
+//                     mesh's positions, by swapping, and the other where the vertices were
+//   laplacian  16     laplacian, per stage
+//   force      12     forces, per stage; only with other forces than curvature and image
+//   along      24     normals: unit normals of the metric and their steps; only with a metric
+//   user       12     user force, per stage; only where there is one
+//
+// 72 bytes per vertex in a run of curvature and image, and 4 per block of 16.
+class Dynamics {
+ public:
+  Dynamics(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model);
+
+  // Moves every vertex that does not sleep once (no sleep: all); displacement, velocity, normal and
+  // path of the mesh are written. Fails where the user's force does; positions, velocities and
+  // paths are then as they were. `after`: as in Schedule::run_passes.
+  Status step(const Guide& guide, Seconds& seconds, const Sleep* sleep = nullptr,
+              const PassEnd& after = {});
+  // Mean of m (dx . n / (delta dt))^2 / 2 over the vertices, of the last step.
+  double energy() const { return energy_; }
+  // The longest movement of the last step, in delta per time.
+  double speed() const { return speed_of_fastest_; }
+  // Positions before the last step.
+  const Buffer<Packed>& before() const { return stage_[0]; }
+  // What the next step reads beside the mesh: the Laplacians of blocks that sleep, of when they
+  // fell asleep; and energy and speed.
+  void save(StateWriter& to) const;
+  void restore(StateReader& from);
+  // What it holds beside the mesh.
+  void append_hashes(std::vector<PartHash>& hashes) const;
+
+ private:
+  void resize(const Guide& guide);
+  void choose_blocks(const Sleep* sleep);
+  std::vector<Pass> passes(const Guide& guide, Seconds& seconds);
+  void add_stage(int stage, const Guide& guide, Seconds& seconds, std::vector<Pass>& table);
+  void normals(const Guide& guide);
+  void laplacians(int stage);
+  void user_force(int stage, const Guide& guide);
+  void measure_rest_length(const Guide& guide);
+  // A stage: the forces, and the update under them.
+  void run_stage(int stage, const Guide& guide);
+  void gather_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end);
+  void image_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end);
+  // From the last stage to the end of the step: where nothing lies between them in one pass.
+  void last_stage_and_move(const Guide& guide);
+  void scale_time_step(const Guide& guide);
+  void hold_pinned(const Guide& guide);
+  void move();
+  void end_step();
+  float longest_move() const;
+
+  // Whether curvature and image are the only forces, and whether nothing happens between the last
+  // stage and the move.
+  bool only_surface_forces(const Guide& guide) const;
+  bool moves_at_once(const Guide& guide) const;
+  kernels::Rk4Coefficients coefficients() const;
+  kernels::Rk4Streams streams(int stage);
+  kernels::SurfaceForces surface_forces(int stage, const Guide& guide) const;
+  kernels::MoveStreams move_streams();
+  kernels::MoveBound move_bound() const;
+  const Streams3& image_normal(const Guide& guide) const;
+  const Packed* stage_position(int stage) const;
+
+  // The blocks that take part in this step, in tasks of kGrain vertices; every pass goes over them.
+  size_t tasks() const;
+  Blocks task(size_t index) const;
+  // body(index of the task, its blocks) for every task.
+  void for_tasks(const std::function<void(size_t, const Blocks&)>& body) const;
+  // body(begin, end) for every run of blocks in every task.
+  void for_runs(const std::function<void(uint32_t, uint32_t)>& body) const;
+
+  Mesh& mesh_;
+  const Schedule& schedule_;
+  SimdTarget simd_;
+  Model model_;
+  float time_step_;  // of this step
+  float rest_length_ = 0;
+  double energy_ = 0;
+  double speed_of_fastest_ = 0;
+  Status status_;
+  Vector<uint32_t> blocks_;             // ascending
+  Vector<kernels::Movement> movement_;  // by task
+  Streams3 force_, speed_, rate_;
+  Streams3 metric_normal_, metric_step_;
+  Streams3 user_force_;
+  Buffer<Packed> stage_[2];
+  Buffer<Packed> laplacian_;
+};
+
+}  // namespace plc

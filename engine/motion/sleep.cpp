@@ -1,0 +1,175 @@
+#include "engine/motion/sleep.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+
+#include "engine/base/blocks.h"
+#include "engine/base/constants.h"
+
+namespace plc {
+
+namespace {
+
+constexpr size_t kTaskCalm = 512;  // blocks
+
+bool all_calm(const Mesh& mesh, uint32_t block) {
+  const uint8_t* calm = mesh.calm.data() + size_t{block} * kRingLanes;
+  // Without a minimum, which GCC 12 looks for one by one.
+  uint8_t stirred[kRingLanes];
+  for (uint32_t lane = 0; lane < kRingLanes; ++lane) stirred[lane] = calm[lane] < kCalmPeriod;
+  uint64_t halves[2];
+  static_assert(sizeof halves == sizeof stirred);
+  std::memcpy(halves, stirred, sizeof halves);
+  return (halves[0] | halves[1]) == 0;
+}
+
+struct Limits {
+  float along;          // of calm vertices: less than this along the normal
+  float slide_squared;  // ... and in all
+  float steps;          // of stir, per mesh unit
+};
+
+// Brings calm and stir of a block's vertices up to date. Returns those that wake their neighbours,
+// as bits. Loops over whole blocks without branches, which compilers make vector code of.
+uint32_t observe_block(Mesh& mesh, uint32_t first, const Limits& limits) {
+  const Streams3 &move = mesh.displacement, &normal = mesh.normal;
+  const float *dx = &move.x[first], *dy = &move.y[first], *dz = &move.z[first];
+  const float *nx = &normal.x[first], *ny = &normal.y[first], *nz = &normal.z[first];
+  int32_t calm[kRingLanes], stir[kRingLanes];
+  for (uint32_t k = 0; k < kRingLanes; ++k) {
+    const float along = std::abs(dx[k] * nx[k] + dy[k] * ny[k] + dz[k] * nz[k]);
+    const float squared = dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k];
+    calm[k] = static_cast<int32_t>(along < limits.along) &
+              static_cast<int32_t>(squared < limits.slide_squared);
+    // Whole steps only: what moves less than one in an iteration wakes nobody.
+    stir[k] = static_cast<int32_t>(std::min(along * limits.steps, 256.0F));
+  }
+  uint8_t* const calm_for = &mesh.calm[first];
+  uint8_t* const stirred = &mesh.stir[first];
+  int32_t most = 0;
+  for (uint32_t k = 0; k < kRingLanes; ++k) {
+    calm_for[k] = static_cast<uint8_t>(calm[k] * std::min(calm_for[k] + 1, 255));
+    stir[k] += stirred[k];
+    most = std::max(most, stir[k]);
+  }
+  uint32_t wakers = 0;
+  for (uint32_t k = 0; k < kRingLanes; ++k) {
+    stirred[k] = stir[k] >= 256 ? uint8_t{0} : static_cast<uint8_t>(stir[k]);
+  }
+  if (most < 256) return 0;
+  for (uint32_t k = 0; k < kRingLanes; ++k) wakers |= static_cast<uint32_t>(stir[k] >= 256) << k;
+  return wakers;
+}
+
+}  // namespace
+
+void Sleep::choose(bool all) {
+  const uint32_t blocks = mesh_.padded() / kRingLanes;
+  asleep_.resize(blocks, 0);
+  calm_.resize(blocks);
+  run_blocks(executor_, blocks, kTaskCalm, [&](size_t, size_t begin, size_t end) {
+    for (size_t block = begin; block < end; ++block) {
+      calm_[block] = !all && calm_speed_ > 0 && all_calm(mesh_, static_cast<uint32_t>(block));
+    }
+  });
+  awake_.clear();
+  fallen_.clear();
+  for (uint32_t block = 0; block < blocks; ++block) {
+    if (calm_[block] == 0) {
+      awake_.push_back(block);
+    } else if (asleep_[block] == 0) {
+      fallen_.push_back(block);
+      for (uint32_t v = block * kRingLanes; v < (block + 1) * kRingLanes; ++v) {
+        mesh_.velocity.set(v, {});
+        mesh_.displacement.set(v, {});
+      }
+    }
+  }
+  asleep_.swap(calm_);
+  any_asleep_ = awake_.size() < blocks;
+  find_rim();
+}
+
+void Sleep::find_rim() {
+  if (!any_asleep()) {
+    awake_and_rim_ = awake_;
+    return;
+  }
+  touched_.assign(asleep_.size(), 0);
+  const RingView rings = mesh_.rings();
+  run_blocks(executor_, awake_.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {
+    // Several tasks may write the same 1. Only where there is none yet: each write takes the cache
+    // line from the other threads.
+    const auto touch = [&](uint32_t block) {
+      const std::atomic_ref<uint8_t> touched(touched_[block]);
+      if (touched.load(std::memory_order_relaxed) == 0) touched.store(1, std::memory_order_relaxed);
+    };
+    for (size_t i = begin; i < end; ++i) {
+      touch(awake_[i]);
+      const uint32_t first = awake_[i] * kRingLanes;
+      const uint16_t most =
+          *std::max_element(rings.valence + first, rings.valence + first + kRingLanes);
+      for (uint32_t k = 0; k < std::min<uint32_t>(most, kRingSlots); ++k) {
+        // Slots past the valence hold the vertex itself.
+        const uint32_t* column =
+            rings.columns + (size_t{awake_[i]} * kRingColumns + k) * kRingLanes;
+        uint32_t block[kRingLanes];
+        for (uint32_t lane = 0; lane < kRingLanes; ++lane) block[lane] = column[lane] / kRingLanes;
+        for (uint32_t lane = 0; lane < kRingLanes; ++lane) touch(block[lane]);
+      }
+      if (most <= kRingSlots) continue;
+      for (uint32_t v = first; v < first + kRingLanes; ++v) {
+        for (uint32_t k = kRingSlots; k < rings.valence[v]; ++k)
+          touch(rings.slot(v, k) / kRingLanes);
+      }
+    }
+  });
+  awake_and_rim_.clear();
+  for (uint32_t block = 0; block < touched_.size(); ++block) {
+    if (touched_[block] != 0) awake_and_rim_.push_back(block);
+  }
+}
+
+void Sleep::observe() {
+  assert(calm_.size() == mesh_.padded() / kRingLanes);  // choose() came before
+  if (calm_speed_ == 0) return;
+  const float along = calm_speed_ * static_cast<float>(mesh_.delta);
+  const float slide = kCalmSlide * along;
+  const Limits limits{along, slide * slide, 256 / (kWakeMove * static_cast<float>(mesh_.delta))};
+  found_.resize(std::max(found_.size(), block_count(awake_.size(), kTaskBlocks)));
+  run_blocks(executor_, awake_.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {
+    auto& wakers = found_[task];
+    wakers.clear();
+    for (size_t i = begin; i < end; ++i) {
+      const uint32_t first = awake_[i] * kRingLanes;
+      uint32_t stirred = observe_block(mesh_, first, limits);
+      for (; stirred != 0; stirred &= stirred - 1) {
+        wakers.push_back(first + static_cast<uint32_t>(__builtin_ctz(stirred)));
+      }
+    }
+  });
+  // Several tasks may write the same 0.
+  executor_.run(block_count(awake_.size(), kTaskBlocks), [&](size_t task) {
+    for (const uint32_t v : found_[task]) {
+      const uint32_t d = mesh_.valence(v);
+      for (uint32_t k = 0; k < d; ++k) {
+        std::atomic_ref<uint8_t>(mesh_.calm[mesh_.neighbor(v, k)])
+            .store(0, std::memory_order_relaxed);
+      }
+    }
+  });
+}
+
+void Sleep::restore(StateReader& from) {
+  from.read_all(asleep_);
+  from.demand(asleep_.size() <= mesh_.padded() / kRingLanes);
+}
+
+void Sleep::wake_all() {
+  std::fill(mesh_.calm.begin(), mesh_.calm.end(), uint8_t{0});
+}
+
+}  // namespace plc

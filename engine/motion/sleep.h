@@ -1,0 +1,60 @@
+// Regions where nothing has moved for long sleep whole, beyond the slow vertices of 3.6: they are
+// neither moved nor checked.
+//
+// A vertex is calm in an iteration in which it has moved less than the calm speed along its normal,
+// and less than kCalmSlide times that in all: sliding within the surface changes samples, not
+// shape. A block of kRingLanes vertices sleeps when all of them have been calm kCalmPeriod times in
+// a row. It is awake again when a transformation or the motion guard has touched one of them, when
+// a neighbour has moved kWakeMove along its normal since it last woke others, and when all are
+// woken: at the start of a level, and before a level may end. Nothing depends on threads.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "engine/base/state_io.h"
+#include "engine/mesh/mesh.h"
+#include "pyramid/executor.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+class Sleep {
+ public:
+  // calm_speed: delta per iteration; 0: nothing ever sleeps.
+  Sleep(Mesh& mesh, const Executor& executor, float calm_speed)
+      : mesh_(mesh), executor_(executor), calm_speed_(calm_speed) {}
+
+  // Chooses the blocks of the coming step. Those that fall asleep lose their velocities and
+  // displacements. all: every block, whatever has been.
+  void choose(bool all);
+  // Ascending block indices: vertices kRingLanes * block .. Those that have fallen asleep just now
+  // in the second list.
+  const Vector<uint32_t>& awake() const { return awake_; }
+  const Vector<uint32_t>& fallen() const { return fallen_; }
+  // The awake ones and those that sleep but have a neighbour of an awake vertex.
+  const Vector<uint32_t>& awake_and_rim() const { return awake_and_rim_; }
+  // Whether some blocks were left out by the last choose().
+  bool any_asleep() const { return any_asleep_; }
+  // After the step: who was calm, and who wakes its neighbours. Normals and displacements are those
+  // of the step.
+  void observe();
+  void wake_all();
+  // Ids have changed: everything that sleeps counts as fallen asleep just now.
+  void restart() { asleep_.clear(); }
+  // Which blocks are asleep: those that fell asleep before are not treated as new ones.
+  void save(StateWriter& to) const { to.add_all(asleep_); }
+  void restore(StateReader& from);
+
+ private:
+  void find_rim();
+
+  Mesh& mesh_;
+  const Executor& executor_;
+  float calm_speed_;
+  bool any_asleep_ = false;
+  Vector<uint32_t> awake_, fallen_, awake_and_rim_;
+  Vector<uint8_t> asleep_, calm_, touched_;  // by block
+  std::vector<Vector<uint32_t>> found_;      // per task
+};
+
+}  // namespace plc

@@ -1,0 +1,30 @@
+// What a run will cost, told from the image before it starts, and what no run may go beyond.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "engine/mesh/mesh_space.h"
+#include "pyramid/executor.h"
+#include "pyramid/pyramid.h"
+
+namespace plc {
+
+// Vertices that a surface within the image can have, at most, on level h: one for each delta^3.
+// Sheets as near as (3) allows, of edges of 1.6 delta in the mean, have a third of it. A surface
+// with more has left the image, or is crumpled by forces that have no rest. `pad`, below too, as in
+// image_view().
+double most_vertices(const Pyramid& pyramid, int h, int pad, Anisotropy anisotropy);
+
+struct Cost {
+  double vertices = 0;  // of the level that has most
+  double voxels = 0;    // of I_0 without its padding
+  double bytes = 0;     // of that level's mesh and of what works on it
+};
+
+// From the voxels' faces between the object and what surrounds it. Smooth objects come out within a
+// third; of noise, which the mesh does not follow, it is too much. isos: of each
+// level; a NaN tells nothing.
+Cost expected_cost(const Pyramid& pyramid, const std::vector<double>& isos, bool inside_above,
+                   int pad, Anisotropy anisotropy, const Executor& executor);
+
+}  // namespace plc

@@ -1,0 +1,402 @@
+#include "engine/recover/recovery.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/base/constants.h"
+#include "engine/mesh/face_rings.h"
+#include "engine/recover/cost.h"
+#include "engine/resolve/refinement.h"
+#include "pyramid/gradient.h"
+
+namespace plc {
+
+namespace {
+
+EvolutionOptions evolution_options(const RecoverySpec& spec) {
+  EvolutionOptions options;
+  // The speed along the normal that every vertex would have at the energy epsilon.
+  const double speed = std::sqrt(2 * spec.epsilon / static_cast<double>(spec.model.mass)) *
+                       static_cast<double>(stable_time_step(spec.model));
+  if (spec.sleeping) options.calm_speed = static_cast<float>(kCalmSpeed * speed);
+  options.slow_vertices = spec.slow_vertices;
+  return options;
+}
+
+}  // namespace
+
+Recovery::Recovery(Pyramid pyramid, RecoverySpec spec, const Schedule& schedule, SimdTarget simd,
+                   RecoveryHooks hooks, Mesh& mesh, std::vector<LevelRecord>& records)
+    : pyramid_(std::move(pyramid)),
+      spec_(std::move(spec)),
+      schedule_(schedule),
+      simd_(simd),
+      hooks_(std::move(hooks)),
+      mesh_(mesh),
+      records_(records),
+      evolution_(mesh, schedule, simd, spec_.model, evolution_options(spec_)),
+      levels_(static_cast<int>(pyramid_.levels.size()) - 1),
+      level_(levels_) {
+  evolution_.set_observer(hooks_.pass);
+}
+
+Status Recovery::start() {
+  while (!done_ && phase_ == Phase::kStart) {
+    if (Status s = start_level(); !s.ok()) return s;
+  }
+  return {};
+}
+
+Status Recovery::advance(Amount amount) {
+  // What belongs to the end of an iteration, or of a level, is done with it.
+  for (bool moved = false; !done_;) {
+    if (moved && phase_ == Phase::kStart && amount != Amount::kAll) return {};
+    if (moved && phase_ == Phase::kIterate && amount == Amount::kIteration) return {};
+    moved = moved || phase_ == Phase::kIterate;
+    if (Status s = step(); !s.ok()) return s;
+  }
+  return {};
+}
+
+Status Recovery::step() {
+  switch (phase_) {
+    case Phase::kStart:
+      return start_level();
+    case Phase::kIterate:
+      return iterate();
+    case Phase::kCheck:
+      check();
+      return {};
+    case Phase::kVerify:
+      return verify();
+    case Phase::kRoundEnd:
+      return end_round();
+    case Phase::kVerdict:
+      return ask_verdict();
+  }
+  return {ErrorCode::kInternal, "recovery: no such phase"};
+}
+
+void Recovery::renumber() {
+  mesh_.renumber(spec_.renumbering ? morton_order(mesh_, schedule_) : living_order(mesh_),
+                 schedule_);
+  evolution_.passed("ids");
+}
+
+// U_h in mesh units.
+double Recovery::unit_of(int h) const {
+  return image_of(h).unit / pyramid_.levels[0].unit;
+}
+
+// A level on which the object does not show, or cannot hold the surface, is passed over: the
+// surface then starts on the next finer one.
+Status Recovery::start_level() {
+  records_.emplace_back();
+  record().level = level_;
+  enter(level_);
+  const bool fresh = mesh_.vertex_count() == 0;
+  if (fresh) {
+    const LevelImage level{pyramid_, level_,         spec_.pad_voxels,
+                           space_,   iso_of(level_), spec_.inside_above};
+    if (Status s = start_surface(spec_.start, level, delta_of(level_), schedule_, simd_, mesh_,
+                                 record().operations);
+        !s.ok()) {
+      return s;
+    }
+    evolution_.passed("start");
+  }
+  if (mesh_.vertex_count() == 0) return leave_level();
+  estimate_.start_level();
+  if (Status s = adapt(); !s.ok()) return s;
+  if (Status s = build_gradient_image(); !s.ok()) return s;
+  tried_ = VoxelSet();
+  bool added = false;
+  if (!fresh) {
+    if (Status s = add_late_bubbles(added); !s.ok()) return s;
+  }
+  late_iterations_ = 0;
+  start_round(0, false);
+  return {};
+}
+
+// The space and the guide of level h.
+void Recovery::enter(int h) {
+  entered_ = h;
+  const MeshSpace before = space_;
+  space_ = mesh_space(pyramid_, h, spec_.anisotropy);
+  if (mesh_.vertex_count() != 0) change_space(mesh_, before, space_);
+  guide_.image = image_view(pyramid_, h, spec_.pad_voxels, space_);
+  guide_.iso = iso_of(h);
+  guide_.metric = space_.metric;
+  user_ = spec_.user;
+  const auto place = [this](Vec3 voxel) {
+    const auto& s = space_.step;
+    return Vec3{voxel.x * static_cast<float>(s[0]), voxel.y * static_cast<float>(s[1]),
+                voxel.z * static_cast<float>(s[2])};
+  };
+  for (Attachment& a : user_.attachments) a.place = place(a.place);
+  for (Pin& p : user_.pins) p.place = place(p.place);
+  for (size_t a = 0; a < 3; ++a) {
+    user_.millimetres[a] = static_cast<float>(pyramid_.levels[0].voxel[a] / space_.step[a]);
+  }
+  if (spec_.force) {
+    user_.force = [this, h](const Mesh& mesh, const Packed* position, Streams3& force) {
+      return spec_.force(h, space_, mesh, position, force);
+    };
+  }
+  guide_.user = &user_;
+}
+
+// (8): per U_h, in the lengths of the forces.
+Status Recovery::build_gradient_image() {
+  const Model& model = spec_.model;
+  if (model.gradient_normal == 0 && model.gradient_tangent == 0) return {};
+  const float metric[3] = {space_.metric.x, space_.metric.y, space_.metric.z};
+  std::array<double, 3> voxel;
+  for (size_t a = 0; a < 3; ++a) {
+    voxel[a] = static_cast<double>(metric[a]) / static_cast<double>(guide_.image.scale[a]) /
+               unit_of(level_);
+    guide_.gradient.dims[a] = guide_.image.dims[a];
+    guide_.gradient.scale[a] = guide_.image.scale[a];
+    guide_.gradient.offset[a] = guide_.image.offset[a];
+  }
+  Status s =
+      build_gradient(image_of(level_), voxel, spec_.gradient_bound, schedule_, simd_, gradient_);
+  guide_.gradient.data = gradient_.data();
+  return s;
+}
+
+// Figure 12, first loop: refine until the density fits the image. With rho = sqrt 3 that is one
+// refinement per level; for other factors delta is set to fit afterwards, and creations and
+// deletions do the rest.
+Status Recovery::adapt() {
+  const double start = now();
+  const double target = delta_of(level_);
+  const int steps = refinements_between(mesh_.delta, target);
+  for (int i = 0; i < steps; ++i) {
+    if (uint64_t{mesh_.vertex_count()} * 3 > mesh_.most_vertices) return too_many_vertices();
+    refine(mesh_, schedule_, spec_.renumbering, simd_);
+    ++record().operations.refinement;
+  }
+  mesh_.delta = target;
+  for (uint32_t v = 0; v < mesh_.slots(); ++v) mesh_.wake(v);
+  evolution_.restart();
+  evolution_.passed("refinement");
+  record().delta = target;
+  record().seconds.topology += now() - start;
+  record().seconds.total += now() - start;
+  return {};
+}
+
+void Recovery::start_round(int number, bool late) {
+  round_ = {};
+  round_.number = number;
+  round_.late = late;
+  estimate_.start_round();
+  const double room = most_vertices(pyramid_, level_, spec_.pad_voxels, spec_.anisotropy);
+  // Starts may lie outside.
+  round_.most_vertices = std::max(static_cast<int64_t>(std::min(room, 1.0 * mesh_.most_vertices)),
+                                  int64_t{2} * mesh_.vertex_count());
+  record().converged = false;
+  phase_ = Phase::kIterate;
+}
+
+int Recovery::iterations_left() const {
+  return spec_.max_iterations - (round_.late ? late_iterations_ : round_.iteration);
+}
+
+Status Recovery::iterate() {
+  if (mesh_.vertex_count() == 0) {
+    phase_ = Phase::kRoundEnd;
+    return {};
+  }
+  LevelRecord& r = record();
+  if (Status s = evolution_.iterate(guide_, r.seconds, r.operations); !s.ok()) return s;
+  ++r.iterations;
+  ++round_.iteration;
+  if (round_.late) ++late_iterations_;
+  if (Status s = check_growth(); !s.ok()) return s;
+  r.energy = energy_ = evolution_.energy();
+  r.speed = evolution_.speed();
+  const bool slow = spec_.calm_speed == 0 || r.speed < spec_.calm_speed;
+  round_.calm = r.energy < spec_.epsilon && slow ? round_.calm + 1 : 0;
+  r.converged = confirmed(round_.calm);
+  estimate_progress();
+  renumber_if_scattered();
+  if (r.converged || iterations_left() == 0) phase_ = Phase::kCheck;
+  return told();
+}
+
+Status Recovery::check_growth() const {
+  if (mesh_.vertex_count() <= round_.most_vertices) return {};
+  return {ErrorCode::kInvalidData,
+          "level " + std::to_string(level_) + ": the surface has grown to " +
+              std::to_string(mesh_.vertex_count()) + " vertices, the image has room for " +
+              std::to_string(round_.most_vertices) + ": its forces drive it on without end"};
+}
+
+Status Recovery::told() const {
+  if (hooks_.progress && !hooks_.progress(progress_)) return {ErrorCode::kCancelled, "cancelled"};
+  return {};
+}
+
+void Recovery::check() {
+  evolution_.check_all(record().seconds, record().operations);
+  record().vertices = mesh_.vertex_count();
+  // The search for faces that meet takes twice as long where a twentieth of the ids lie anywhere.
+  renumber();
+  evolution_.restart();
+  phase_ = Phase::kVerify;
+}
+
+// The guards keep the surface from meeting itself; that they did is tested on every level, and told
+// where they failed.
+Status Recovery::verify() {
+  constexpr int kRepairs = 50;
+  if (evolution_.embedded()) {
+    phase_ = Phase::kRoundEnd;
+    return {};
+  }
+  if (round_.repairs == kRepairs) {
+    return {ErrorCode::kInternal, "level " + std::to_string(level_) +
+                                      ": the surface meets itself and could not be parted"};
+  }
+  if (Status s = evolution_.iterate(guide_, record().seconds, record().operations); !s.ok()) {
+    return s;
+  }
+  ++round_.repairs;
+  return told();
+}
+
+Status Recovery::end_round() {
+  // What is missed on a coarse image the next finer one shows.
+  const bool again = round_.number < kLateRounds && late_iterations_ < spec_.max_iterations;
+  if (level_ == 0 && again) {
+    bool added = false;
+    if (Status s = add_late_bubbles(added); !s.ok()) return s;
+    if (added) {
+      start_round(round_.number + 1, true);
+      return {};
+    }
+  }
+  if (mesh_.vertex_count() == 0) return leave_level();
+  if (!mesh_.in_order()) {  // repaired since
+    renumber();
+    evolution_.restart();
+  }
+  phase_ = Phase::kVerdict;
+  return {};
+}
+
+Status Recovery::ask_verdict() {
+  const LevelVerdict verdict = hooks_.level ? hooks_.level(record()) : LevelVerdict::kAccept;
+  if (verdict == LevelVerdict::kCancel) return {ErrorCode::kCancelled, "cancelled"};
+  if (verdict == LevelVerdict::kMore) {
+    start_round(round_.number + 1, false);
+    return {};
+  }
+  done_ = verdict == LevelVerdict::kStop;
+  return leave_level();
+}
+
+Status Recovery::leave_level() {
+  if (hooks_.left) hooks_.left(record());
+  pyramid_.levels[static_cast<size_t>(level_)].values = Buffer<float>();  // not needed any more
+  if (level_ == 0 && mesh_.vertex_count() == 0) {
+    return {ErrorCode::kInvalidData,
+            "no surface: nothing in the image holds one at this iso-value; check the iso-value, or "
+            "use weaker internal forces"};
+  }
+  done_ = done_ || level_ == 0;
+  phase_ = Phase::kStart;
+  if (done_) {
+    progress_.fraction = 1;
+    if (!mesh_.in_order()) renumber();
+  } else {
+    --level_;
+  }
+  return {};
+}
+
+// True when the level has converged: `calm` iterations in a row, the last ones with all awake.
+bool Recovery::confirmed(int calm) {
+  Confirmation& c = round_.confirmation;
+  const int iteration = round_.iteration;
+  if (c.since != 0 && calm < iteration - c.since) {
+    c = {0, iteration + kConfirmPause};
+  }
+  if (calm < kCalmIterations) return false;
+  if (c.since != 0) {
+    return iteration >= kMinIterations && iteration - c.since >= kConfirmIterations;
+  }
+  if (!evolution_.any_asleep()) return iteration >= kMinIterations;
+  if (iteration < std::max(c.not_before, kMinIterations - kConfirmIterations)) return false;
+  evolution_.wake_all();
+  c.since = iteration;
+  return false;
+}
+
+// `added`: whether something had been missed.
+Status Recovery::add_late_bubbles(bool& added) {
+  added = false;
+  const bool at_rest = mesh_.vertex_count() == 0 || energy_ <= kLateEnergy * spec_.epsilon;
+  if (!spec_.late_bubbles || std::isnan(guide_.iso) || !at_rest) return {};
+  const double start = now();
+  const uint32_t before = mesh_.vertex_count();
+  LateBubbles late;
+  if (Status s = start_late_bubbles(guide_.image, guide_.iso, spec_.inside_above, schedule_, simd_,
+                                    mesh_, tried_, late, record().operations);
+      !s.ok()) {
+    return s;
+  }
+  evolution_.passed("late bubbles");
+  const auto& mm = user_.millimetres;
+  record().late.bubbles += late.bubbles;
+  record().late.cavities += late.cavities;
+  record().late.volume += late.volume * static_cast<double>(mm[0]) * static_cast<double>(mm[1]) *
+                          static_cast<double>(mm[2]);
+  added = mesh_.vertex_count() != before;
+  if (added) {
+    renumber();
+    evolution_.restart();
+  }
+  record().seconds.topology += now() - start;
+  record().seconds.total += now() - start;
+  return {};
+}
+
+// Neighbours that are far apart in memory cost three times as much, and boxes over runs of ids
+// grow: when the new vertices are a sixteenth of all.
+void Recovery::renumber_if_scattered() {
+  if (!spec_.renumbering || mesh_.created() <= mesh_.vertex_count() / 16) return;
+  renumber();
+  evolution_.restart();
+}
+
+void Recovery::estimate_progress() {
+  const LevelRecord& r = record();
+  ProgressEstimate::Ahead ahead;
+  ahead.iterations = iterations_left();
+  ahead.vertices = mesh_.vertex_count();
+  ahead.finer_levels = level_;
+  ahead.calm = r.converged;
+  // Bubbles come late where they came late before.
+  const bool late = std::any_of(records_.begin(), records_.end(), [](const LevelRecord& l) {
+    return l.late.bubbles + l.late.cavities > 0;
+  });
+  ahead.again = spec_.late_bubbles && late && !round_.late;
+  const double done = estimate_.add(r.operations, r.energy / spec_.epsilon, ahead);
+  progress_ = {level_,   levels_, static_cast<int>(r.iterations),    mesh_.vertex_count(),
+               r.energy, r.speed, std::max(progress_.fraction, done)};
+}
+
+Status pyramidal_recover_shape(Pyramid pyramid, const RecoverySpec& spec, const Schedule& schedule,
+                               SimdTarget simd, const RecoveryHooks& hooks, Mesh& mesh,
+                               std::vector<LevelRecord>& records) {
+  Recovery recovery(std::move(pyramid), spec, schedule, simd, hooks, mesh, records);
+  if (Status s = recovery.start(); !s.ok()) return s;
+  return recovery.advance(Amount::kAll);
+}
+
+}  // namespace plc

@@ -1,0 +1,193 @@
+// RecoverShape and PyramidalRecoverShape (figures 12 and 13): the surface through the pyramid.
+#pragma once
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "engine/base/schedule.h"
+#include "engine/base/state_io.h"
+#include "engine/base/statistics.h"
+#include "engine/mesh/mesh.h"
+#include "engine/mesh/mesh_space.h"
+#include "engine/motion/dynamics.h"
+#include "engine/recover/evolution.h"
+#include "engine/recover/pass_observer.h"
+#include "engine/recover/progress_estimate.h"
+#include "engine/resolve/resolution.h"
+#include "engine/start/late_bubbles.h"
+#include "engine/start/level_start.h"
+#include "engine/start/voxel_set.h"
+#include "pyramid/pyramid.h"
+#include "pyramid/status.h"
+
+namespace plc {
+
+// As UserForce, on a level and in its space.
+using LevelForce = std::function<Status(int level, const MeshSpace& space, const Mesh& mesh,
+                                        const Packed* position, Streams3& force)>;
+
+struct RecoverySpec {
+  Model model;
+  std::vector<double> isos;  // pi_I per level, normalised; [0] is that of I_0; NAN: no iso force
+  bool inside_above = true;
+  double gradient_bound = 0.1;  // of (8): the largest norm, in window per U_h; used norms are <= 1
+  int pad_voxels = 0;           // by which the pyramid's I_0 is larger than the input on every side
+  Anisotropy anisotropy = Anisotropy::kVoxel;
+  StartSpec start;
+  // Attachments and pins, their places in voxel indices of the unpadded I_0; the force is not read.
+  UserConstraints user;
+  LevelForce force;  // may be empty
+  bool late_bubbles = true;
+  bool sleeping = true;       // sleep.h; never with a user's force, which may change at any time
+  bool slow_vertices = true;  // 3.6; false: every vertex is checked in every iteration
+  bool renumbering = true;    // along a space-filling curve, at refinements and as ids scatter
+  double epsilon = 5e-6;
+  double calm_speed = 0;  // delta per time; 0: the energy alone tells
+  int max_iterations = 2000;
+};
+
+struct LevelRecord {
+  int level = 0;
+  double delta = 0;
+  int64_t iterations = 0, vertices = 0;
+  bool converged = false;
+  double energy = 0, speed = 0;  // of the last iteration; speed of the fastest, delta per time
+  Seconds seconds;
+  OperationCounts operations;
+  LateBubbles late;  // volume in mm3
+};
+
+// What the user says of a level that has come to its end.
+enum class LevelVerdict { kAccept, kMore, kStop, kCancel };
+
+struct RecoveryProgress {
+  int level, levels, iteration;
+  int64_t vertices;
+  double energy, speed, fraction;
+};
+
+struct RecoveryHooks {
+  // After every iteration; returns false to stop there. May be empty.
+  std::function<bool(const RecoveryProgress&)> progress;
+  // At the end of every level that holds a surface, which is then in mesh_space() of that level,
+  // without gaps in the ids. kMore: up to max_iterations more. kStop: the recovery ends here.
+  // kCancel: it stops there, and asks again when it goes on. May be empty.
+  std::function<LevelVerdict(const LevelRecord&)> level;
+  // When a level has been left, whether it holds a surface or not. May be empty.
+  std::function<void(const LevelRecord&)> left{};
+  // After every pass. For tests; may be empty.
+  PassObserver pass{};
+};
+
+// How far a recovery goes on in one call.
+enum class Amount { kIteration, kLevel, kAll };
+
+// The surface's way through the pyramid, which may be left and saved between any two iterations.
+class Recovery {
+ public:
+  // Evolves `mesh`, which is empty, from the coarsest level of the pyramid to I_0; records gets
+  // one entry per level, coarse to fine. Both must outlive it, as must the schedule. The pyramid is
+  // given away: a level's values are released when the recovery goes on to the next finer one, so
+  // that on I_0, which is borrowed, none are left.
+  Recovery(Pyramid pyramid, RecoverySpec spec, const Schedule& schedule, SimdTarget simd,
+           RecoveryHooks hooks, Mesh& mesh, std::vector<LevelRecord>& records);
+
+  // Up to the initial surface of the coarsest level that shows the object. A level that holds no
+  // surface has 0 vertices in its record; the next finer one then starts anew. Errors: those of
+  // start_surface(), kInvalidData (no level holds a surface), kOutOfMemory.
+  Status start();
+  // Goes on, after start(). The mesh is in space() and, where the level has come to its end or all
+  // is done, without gaps in its ids; closed, oriented, free of self-intersections. kCancelled, by
+  // the progress hook or the user's force: it can go on. After any other error it can not:
+  // kInvalidData (no level holds a surface), kOutOfMemory, what the user's force returns.
+  Status advance(Amount amount);
+  bool done() const { return done_; }
+  // The last level has come to its end.
+  bool between_levels() const { return done_ || phase_ == Phase::kStart; }
+  const MeshSpace& space() const { return space_; }
+  // Of the last iteration.
+  const RecoveryProgress& progress() const { return progress_; }
+
+  // The state between two calls, mesh and records included, pyramid, spec and hooks not. restore():
+  // instead of start(), of a recovery with equal ones, which then goes on with the same bits. False
+  // where what is read is no such state; the recovery cannot be used then.
+  void save(StateWriter& to) const;
+  bool restore(StateReader& from);
+
+ private:
+  enum class Phase : uint8_t { kStart, kIterate, kCheck, kVerify, kRoundEnd, kVerdict };
+  // What sleeps tells nothing: all are woken, and only when they are calm the level has converged.
+  struct Confirmation {
+    int since = 0;       // iteration in which all were woken; 0: they were not
+    int not_before = 0;  // iteration in which they may be woken again
+  };
+  // Of a level's evolution, until it converges or for max_iterations, which the rounds after late
+  // bubbles share.
+  struct Round {
+    int number = 0;
+    bool late = false;
+    int iteration = 0;
+    int calm = 0;  // iterations in a row
+    Confirmation confirmation;
+    int64_t most_vertices = 0;  // more are no surface of the level's image
+    int repairs = 0;
+  };
+
+  Status step();
+  Status start_level();
+  void enter(int h);
+  Status build_gradient_image();
+  Status adapt();
+  void start_round(int number, bool late);
+  int iterations_left() const;  // of the round
+  Status iterate();
+  void check();
+  Status verify();
+  Status end_round();
+  Status ask_verdict();
+  Status leave_level();
+  Status add_late_bubbles(bool& added);
+  Status told() const;  // the user, of the last iteration
+  bool confirmed(int calm);
+  bool restore_tried(StateReader& from);
+  void renumber();
+  void renumber_if_scattered();
+  void estimate_progress();
+  double delta_of(int h) const { return level_delta(pyramid_, h, spec_.anisotropy); }
+  Status check_growth() const;
+  double unit_of(int h) const;
+  float iso_of(int h) const { return static_cast<float>(spec_.isos[static_cast<size_t>(h)]); }
+  const PyramidLevel& image_of(int h) const { return pyramid_.levels[static_cast<size_t>(h)]; }
+  LevelRecord& record() { return records_.back(); }
+
+  Pyramid pyramid_;
+  RecoverySpec spec_;
+  const Schedule& schedule_;
+  SimdTarget simd_;
+  RecoveryHooks hooks_;
+  Mesh& mesh_;
+  std::vector<LevelRecord>& records_;
+  Evolution evolution_;
+  int levels_;
+  int level_;         // h
+  int entered_ = -1;  // the level of space_ and guide_; -1: none yet
+  Phase phase_ = Phase::kStart;
+  bool done_ = false;
+  Round round_;
+  int late_iterations_ = 0;  // of the level's rounds after late bubbles
+  MeshSpace space_;
+  Guide guide_;
+  UserConstraints user_;     // in the space of the level
+  Buffer<Packed> gradient_;  // of the level
+  VoxelSet tried_;           // voxels of the level's late bubbles
+  double energy_ = 0;        // of the last iteration on any level
+  RecoveryProgress progress_{};
+  ProgressEstimate estimate_;
+};
+
+// All of it: start and advance to the end.
+Status pyramidal_recover_shape(Pyramid pyramid, const RecoverySpec& spec, const Schedule& schedule,
+                               SimdTarget simd, const RecoveryHooks& hooks, Mesh& mesh,
+                               std::vector<LevelRecord>& records);
+
+}  // namespace plc

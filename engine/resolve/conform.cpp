@@ -1,0 +1,165 @@
+#include "engine/resolve/conform.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdio>
+#include <queue>
+#include <string>
+#include <tuple>
+
+#include "engine/base/constants.h"
+#include "engine/guard/self_meeting.h"
+#include "engine/mesh/face_rings.h"
+#include "engine/mesh/mesh_invariants.h"
+#include "engine/resolve/refinement.h"
+#include "engine/resolve/resolution.h"
+#include "engine/transform/creation.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+namespace {
+
+// Pairs that an annular transformation has cut are never old enough to be joined again: without
+// forces they would be, for ever.
+constexpr uint32_t kIteration = 1;
+
+int64_t applied(const OperationCounts& c) {
+  return c.creation + c.inversion + c.deletion + c.annular + c.axial + c.tetrahedron;
+}
+
+// visit(u, v, squared length) for every edge, u < v.
+template <typename Visit>
+void visit_edges(const Mesh& mesh, const Visit& visit) {
+  for (uint32_t u = 0; u < mesh.slots(); ++u) {
+    for (uint32_t k = 0; k < mesh.valence(u); ++k) {
+      const uint32_t v = mesh.neighbor(u, k);
+      if (u < v) visit(u, v, squared_distance(mesh.at(u), mesh.at(v)));
+    }
+  }
+}
+
+struct LongEdge {
+  float squared;
+  uint32_t u, v;
+  // The longest on top of a queue, ties by ids.
+  friend bool operator<(const LongEdge& l, const LongEdge& r) {
+    return std::tie(l.squared, r.u, r.v) < std::tie(r.squared, l.u, l.v);
+  }
+};
+
+// At least so many: no face within (2) is larger than the equilateral one.
+double vertices_needed(const Mesh& mesh) {
+  const Vector<uint32_t> abc = mesh.faces();
+  double area = 0;
+  for (size_t i = 0; i < abc.size(); i += 3) {
+    area += static_cast<double>(length(area_vector(mesh, abc[i], abc[i + 1], abc[i + 2]))) / 2;
+  }
+  const double edge = static_cast<double>(kMaxEdge) * mesh.delta;
+  return area / (std::sqrt(3.0) / 4 * edge * edge) / 2;
+}
+
+Status divide_long_edges(Mesh& mesh, OperationCounts& counts) {
+  if (vertices_needed(mesh) > static_cast<double>(mesh.most_vertices)) return too_many_vertices();
+  const auto delta = static_cast<float>(mesh.delta);
+  const float longest = kMaxEdge * kMaxEdge * delta * delta;
+  // An edge in the queue stays what it is until its turn: only edges taken from it go.
+  std::priority_queue<LongEdge> queue;
+  const auto consider = [&](uint32_t u, uint32_t v, float squared) {
+    if (squared >= longest) queue.push({squared, std::min(u, v), std::max(u, v)});
+  };
+  visit_edges(mesh, consider);
+  while (!queue.empty()) {
+    const LongEdge top = queue.top();
+    queue.pop();
+    const Edge e = edge_between(mesh, top.u, top.v);
+    if (mesh.slots() >= mesh.most_vertices) return too_many_vertices();
+    if (std::max(mesh.valence(e.a), mesh.valence(e.b)) >= mesh.most_neighbors) {
+      return {ErrorCode::kInvalidData, "too many edges at one vertex to divide those around it"};
+    }
+    const uint32_t w = create_on_edge(mesh, e);
+    ++counts.creation;
+    for (const uint32_t x : {e.u, e.a, e.v, e.b}) {
+      consider(w, x, squared_distance(mesh.at(w), mesh.at(x)));
+    }
+  }
+  return {};
+}
+
+double longest_edge(const Mesh& mesh) {
+  float longest = 0;
+  visit_edges(mesh,
+              [&](uint32_t, uint32_t, float squared) { longest = std::max(longest, squared); });
+  return std::sqrt(static_cast<double>(longest));
+}
+
+void settle(Mesh& mesh, const Executor& executor, Resolution& resolution, OperationCounts& counts) {
+  mesh.renumber(morton_order(mesh, executor), executor);
+  resolution.restart();
+  for (int pass = 0; pass < kConformPasses; ++pass) {
+    const int64_t before = applied(counts);
+    resolution.take_all();
+    resolution.run(kIteration, counts);
+    if (applied(counts) == before) break;
+  }
+}
+
+void put_at_rest(Mesh& mesh, const Executor& executor) {
+  mesh.renumber(morton_order(mesh, executor), executor);
+  for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    mesh.wake(v);
+    mesh.velocity.set(v, {});
+    mesh.risk[v] = Mesh::kNearRisk;
+    mesh.path[v] = 0;
+    mesh.operations[v] = 0;
+    mesh.cut_id[v] = 0;
+  }
+}
+
+}  // namespace
+
+Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget simd,
+               OperationCounts& counts) {
+  mesh.delta = delta;
+  const uint32_t given = mesh.slots();
+  if (Status s = divide_long_edges(mesh, counts); !s.ok()) return s;
+  if (mesh.slots() != given) {
+    // Boxes over runs of ids that lie anywhere part nothing: the search would take quadratic time.
+    mesh.renumber(morton_order(mesh, schedule), schedule);
+    if (!meeting_faces(mesh, schedule, simd).empty()) {
+      return {ErrorCode::kInvalidData,
+              "the surface has faces too thin to be divided in single precision"};
+    }
+  }
+  Resolution resolution(mesh, schedule, simd);
+  // Just within (2).
+  constexpr double kRoom = 1.01;
+  double step = longest_edge(mesh) / static_cast<double>(kMaxEdge) * kRoom;
+  while (step < delta && mesh.vertex_count() != 0) {
+    mesh.delta = step;
+    settle(mesh, schedule, resolution, counts);
+    step *= kRefinement;
+  }
+  mesh.delta = delta;
+  settle(mesh, schedule, resolution, counts);
+  put_at_rest(mesh, schedule);
+  if (mesh.vertex_count() == 0) {
+    return {ErrorCode::kInvalidData,
+            "nothing is left of the surface at this resolution: it is too small or too thin"};
+  }
+  assert(broken_invariant(mesh).empty());
+  if (const auto meeting = meeting_faces(mesh, schedule, simd); !meeting.empty()) {
+    const Vec3 p = mesh.at(meeting[0][0]);
+    char line[160];
+    std::snprintf(line, sizeof line,
+                  "the surface meets itself after it was brought to delta %.6g: %zu faces, the "
+                  "first at (%.6g, %.6g, %.6g)",
+                  delta, meeting.size(), static_cast<double>(p.x), static_cast<double>(p.y),
+                  static_cast<double>(p.z));
+    return {ErrorCode::kInternal, line};
+  }
+  return {};
+}
+
+}  // namespace plc

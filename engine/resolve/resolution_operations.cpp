@@ -1,0 +1,103 @@
+// How the resolution applies one operation, and what is checked again after it.
+#include "engine/base/constants.h"
+#include "engine/resolve/resolution.h"
+#include "engine/transform/annular.h"
+#include "engine/transform/axial.h"
+#include "engine/transform/creation.h"
+#include "engine/transform/deletion.h"
+#include "engine/transform/inversion.h"
+
+namespace plc {
+
+// False when the embedding guard refused it; the mesh is as before then.
+bool Resolution::apply(const Candidate& candidate, size_t trial, OperationCounts& counts) {
+  const auto count = [](bool done, int64_t& counter) {
+    counter += done ? 1 : 0;
+    return done;
+  };
+  switch (candidate.operation) {
+    case Operation::kAnnular:
+      return count(apply_annular(candidate), counts.annular);
+    case Operation::kDeletion:
+      return apply_deletion(candidate, trial, counts);
+    case Operation::kInversion:
+      if (count(apply_inversion(candidate, trial), counts.inversion)) return true;
+      // A long edge that may not be inverted is split.
+      return candidate.key < 0 &&
+             count(apply_creation({Operation::kCreation, candidate.key, candidate.edge},
+                                  Trials::kUntried),
+                   counts.creation);
+    case Operation::kCreation:
+      return count(apply_creation(candidate, trial), counts.creation);
+    case Operation::kAxial:
+      return count(apply_axial(candidate), counts.axial);
+  }
+  return false;
+}
+
+void Resolution::involve(uint32_t v) {
+  edge_queue_.push_back(v);
+  pair_queue_.push_back(v);
+  mesh_.calm[v] = 0;
+  trials_.changed(v);
+}
+
+void Resolution::moved(uint32_t v) {
+  hash_.insert(v, mesh_.at(v));
+  involve(v);
+}
+
+bool Resolution::apply_creation(const Candidate& candidate, size_t trial) {
+  if (trials_.admitted(candidate, trial) == Trials::kRefused) return false;
+  moved(create_on_edge(mesh_, candidate.edge));
+  return true;
+}
+
+bool Resolution::apply_inversion(const Candidate& candidate, size_t trial) {
+  const Edge& e = candidate.edge;
+  if (trials_.admitted(candidate, trial) == Trials::kRefused) return false;
+  invert_edge(mesh_, e);
+  for (const uint32_t v : {e.u, e.v, e.a, e.b}) involve(v);
+  return true;
+}
+
+bool Resolution::apply_deletion(const Candidate& candidate, size_t trial, OperationCounts& counts) {
+  const Edge& e = candidate.edge;
+  if (mesh_.valence(e.a) == 3 || mesh_.valence(e.b) == 3) {
+    // Exactly two common neighbours and an apex of valence 3: the component is a tetrahedron.
+    delete_tetrahedron(mesh_, mesh_.valence(e.a) == 3 ? e.a : e.b);
+    ++counts.tetrahedron;
+    return true;
+  }
+  const uint32_t place = trials_.admitted(candidate, trial);
+  if (place == Trials::kRefused) return false;
+  delete_edge(mesh_, e, Trials::deletion_place(mesh_, e, place));
+  moved(e.u);
+  changed_.push_back(e.u);
+  ++counts.deletion;
+  return true;
+}
+
+bool Resolution::apply_annular(const Candidate& candidate) {
+  const Edge& e = candidate.edge;
+  const Cycle cycle{{e.u, e.v, e.a}};
+  const auto copies = annular_copies(mesh_, cycle, kAnnularRetreat);
+  if (!guard_.embeds(mesh_, hash_, propose_annular(mesh_, cycle, copies))) return false;
+  const auto right = cut_cycle(mesh_, cycle, copies, next_cut_++, iteration_);
+  for (uint32_t i = 0; i < 3; ++i) {
+    for (const uint32_t v : {cycle.corner[i], right[i]}) {
+      moved(v);
+      changed_.push_back(v);
+    }
+  }
+  return true;
+}
+
+bool Resolution::apply_axial(const Candidate& candidate) {
+  const AxialPlan plan = plan_axial(mesh_, candidate.edge.u, candidate.edge.v);
+  if (!guard_.embeds(mesh_, hash_, propose_axial(mesh_, plan))) return false;
+  for (const uint32_t v : join(mesh_, plan)) moved(v);
+  return true;
+}
+
+}  // namespace plc

@@ -1,0 +1,284 @@
+#include "engine/start/iso_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "engine/base/blocks.h"
+#include "engine/mesh/face_rings.h"
+#include "kernels/image_value.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+namespace {
+
+// Layers of cells per task; each task holds two slices of ids.
+constexpr size_t kLayers = 8;
+// Edges from a lattice point to larger coordinates: direction d = 1 .. 7, bit a of d is axis a.
+constexpr size_t kDirections = 7;
+
+// The corners of the six tetrahedra of a cell, bit a is axis a: along three axes in turn. All are
+// positively oriented: odd orders of axes have two corners exchanged.
+constexpr uint32_t kTetrahedra[6][4] = {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7},
+                                        {0, 3, 2, 7}, {0, 5, 1, 7}, {0, 6, 4, 7}};
+// Even permutations that put the corner, or the two corners, of one side first.
+constexpr uint32_t kOneFirst[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 0, 1, 3}, {3, 0, 2, 1}};
+
+using Face = std::array<uint32_t, 3>;
+
+// The lattice: the voxels, and one point more on every side that is outside.
+class Lattice {
+ public:
+  Lattice(const ImageView& image, const LatticeValues& values, float iso, bool inside_above)
+      : image_(image), values_(values), iso_(iso), above_(inside_above) {
+    for (size_t a = 0; a < 3; ++a) size_[a] = static_cast<size_t>(image.dims[a]) + 2;
+  }
+
+  size_t slices() const { return size_[2]; }
+  size_t slice_points() const { return size_[0] * size_[1]; }
+  size_t columns() const { return size_[0]; }
+  size_t rows() const { return size_[1]; }
+  size_t point(size_t x, size_t y) const { return y * size_[0] + x; }
+
+  // A byte per point of slice z: 1 inside.
+  void classify(size_t z, Vector<uint8_t>& inside) const {
+    inside.assign(slice_points(), 0);
+    if (z == 0 || z + 1 >= size_[2]) return;
+    Vector<float> row(size_[0]);
+    for (size_t y = 1; y + 1 < size_[1]; ++y) {
+      values_.row(voxel(y), voxel(z), row.data());
+      uint8_t* to = inside.data() + point(1, y);
+      for (size_t x = 0; x + 2 < size_[0]; ++x) {
+        to[x] = static_cast<uint8_t>(above_ ? row[x] >= iso_ : row[x] <= iso_);
+      }
+    }
+  }
+
+  // Where the surface crosses the edge from (x, y, z) in direction d, in mesh space.
+  Vec3 crossing(size_t x, size_t y, size_t z, size_t d) const {
+    const std::array<size_t, 3> from{x, y, z};
+    const std::array<size_t, 3> to{x + (d & 1), y + (d >> 1 & 1), z + (d >> 2 & 1)};
+    double t = 0.5;  // beyond the border there is no value to go by
+    if (is_voxel(from) && is_voxel(to)) {
+      const double a = values_.at(voxel(from[0]), voxel(from[1]), voxel(from[2]));
+      const double b = values_.at(voxel(to[0]), voxel(to[1]), voxel(to[2]));
+      t = (static_cast<double>(iso_) - a) / (b - a);
+      t = t > kIsoMargin ? std::min(t, 1 - kIsoMargin) : kIsoMargin;  // a NaN is put at the margin
+    }
+    std::array<float, 3> p{};
+    for (size_t a = 0; a < 3; ++a) {
+      const double c = static_cast<double>(from[a]) - 1 + (to[a] != from[a] ? t : 0);
+      p[a] = static_cast<float>((c - static_cast<double>(image_.offset[a])) /
+                                static_cast<double>(image_.scale[a]));
+    }
+    return {p[0], p[1], p[2]};
+  }
+
+ private:
+  bool is_voxel(const std::array<size_t, 3>& p) const {
+    return p[0] != 0 && p[1] != 0 && p[2] != 0 && p[0] + 1 != size_[0] && p[1] + 1 != size_[1] &&
+           p[2] + 1 != size_[2];
+  }
+  static int32_t voxel(size_t point) { return static_cast<int32_t>(point) - 1; }
+
+  const ImageView& image_;
+  const LatticeValues& values_;
+  float iso_;
+  bool above_;
+  std::array<size_t, 3> size_{};
+};
+
+// visit(x, y, d) for every edge that begins in a slice and is crossed, in the order of ids. above:
+// the next slice.
+template <typename Visit>
+void visit_crossed(const Lattice& lattice, const Vector<uint8_t>& inside,
+                   const Vector<uint8_t>& above, const Visit& visit) {
+  const size_t nx = lattice.columns();
+  // Points of the last row and column are outside, and so are those that they would lead to.
+  for (size_t y = 0; y + 1 < lattice.rows(); ++y) {
+    for (size_t x = 0; x + 1 < nx; ++x) {
+      const size_t i = lattice.point(x, y);
+      const uint8_t own = inside[i];
+      const uint8_t others[kDirections] = {inside[i + 1],    inside[i + nx], inside[i + nx + 1],
+                                           above[i],         above[i + 1],   above[i + nx],
+                                           above[i + nx + 1]};
+      for (size_t d = 1; d <= kDirections; ++d) {
+        if (others[d - 1] != own) visit(x, y, d);
+      }
+    }
+  }
+}
+
+// Ids of the edges that begin in one slice: [point][d - 1], written where an edge is crossed.
+struct EdgeIds {
+  Vector<uint8_t> inside;
+  Vector<uint32_t> ids;
+};
+
+class Builder {
+ public:
+  Builder(const ImageView& image, const LatticeValues& values, float iso, bool inside_above,
+          const Executor& executor)
+      : lattice_(image, values, iso, inside_above),
+        executor_(executor),
+        layers_(lattice_.slices() - 1),
+        first_id_(layers_ + 1, 0) {}
+
+  Status count() {
+    for_layers([&](size_t, size_t begin, size_t end) {
+      Vector<uint8_t> inside, above;
+      lattice_.classify(begin, inside);
+      for (size_t z = begin; z < end; ++z) {
+        lattice_.classify(z + 1, above);
+        visit_crossed(lattice_, inside, above, [&](size_t, size_t, size_t) { ++first_id_[z + 1]; });
+        inside.swap(above);
+      }
+    });
+    for (size_t z = 0; z < layers_; ++z) first_id_[z + 1] += first_id_[z];
+    if (vertex_count() == 0) {
+      return {ErrorCode::kInvalidData,
+              "no iso-surface: no voxel of the image is inside; check the iso-value"};
+    }
+    if (vertex_count() > kMaxMeshVertices) {
+      return {ErrorCode::kOutOfMemory, "the iso-surface has " + std::to_string(vertex_count()) +
+                                           " vertices, at most " +
+                                           std::to_string(kMaxMeshVertices) + " are possible"};
+    }
+    return {};
+  }
+
+  void build(Mesh& mesh) {
+    xyz_.resize(3 * vertex_count());
+    faces_.resize(block_count(layers_, kLayers));
+    for_layers([&](size_t block, size_t begin, size_t end) {
+      EdgeIds lower, upper;
+      number(begin, lower);
+      for (size_t z = begin; z < end; ++z) {
+        place(z, lower);
+        number(z + 1, upper);
+        march(lower, upper, faces_[block]);
+        std::swap(lower, upper);
+      }
+    });
+    Vector<uint32_t> abc;
+    size_t count = 0;
+    for (const auto& part : faces_) count += part.size();
+    abc.reserve(3 * count);
+    for (const auto& part : faces_) {
+      for (const Face& f : part) abc.insert(abc.end(), f.begin(), f.end());
+    }
+    const FaceRings rings(abc.data(), count, vertex_count(), executor_);
+    fill_from_rings(mesh, xyz_.data(), vertex_count(), rings);
+  }
+
+ private:
+  size_t vertex_count() const { return first_id_[layers_]; }
+
+  // body(block, begin, end) over layers of cells; layer z lies between the slices z and z + 1.
+  template <typename Body>
+  void for_layers(const Body& body) {
+    run_blocks(executor_, layers_, kLayers, body);
+  }
+
+  // The ids of the edges that begin in slice z, which may be the last.
+  void number(size_t z, EdgeIds& slice) const {
+    lattice_.classify(z, slice.inside);
+    if (z == layers_) return;  // all outside: no edge begins here
+    slice.ids.resize(lattice_.slice_points() * kDirections);
+    Vector<uint8_t> above;
+    lattice_.classify(z + 1, above);
+    auto id = static_cast<uint32_t>(first_id_[z]);
+    visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, size_t d) {
+      slice.ids[lattice_.point(x, y) * kDirections + d - 1] = id++;
+    });
+  }
+
+  // The positions of the vertices of slice z.
+  void place(size_t z, const EdgeIds& slice) {
+    Vector<uint8_t> above;
+    lattice_.classify(z + 1, above);
+    size_t id = first_id_[z];
+    visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, size_t d) {
+      const Vec3 p = lattice_.crossing(x, y, z, d);
+      xyz_[3 * id] = p.x, xyz_[3 * id + 1] = p.y, xyz_[3 * id + 2] = p.z;
+      ++id;
+    });
+  }
+
+  void march(const EdgeIds& lower, const EdgeIds& upper, Vector<Face>& out) const {
+    const size_t nx = lattice_.columns();
+    for (size_t y = 0; y + 1 < lattice_.rows(); ++y) {
+      for (size_t x = 0; x + 1 < nx; ++x) {
+        const size_t i = lattice_.point(x, y);
+        const size_t at[4] = {i, i + 1, i + nx, i + nx + 1};
+        uint32_t inside = 0;
+        for (uint32_t c = 0; c < 4; ++c) {
+          inside |= static_cast<uint32_t>(lower.inside[at[c]]) << c;
+          inside |= static_cast<uint32_t>(upper.inside[at[c]]) << (c + 4);
+        }
+        if (inside == 0 || inside == 255) continue;
+        // The vertex between two corners of a tetrahedron: one contains the bits of the other.
+        const auto between = [&](uint32_t p, uint32_t q) {
+          const uint32_t low = p & q;
+          const EdgeIds& slice = low < 4 ? lower : upper;
+          return slice.ids[at[low & 3] * kDirections + (p ^ q) - 1];
+        };
+        for (const auto& tetrahedron : kTetrahedra) cut(tetrahedron, inside, between, out);
+      }
+    }
+  }
+
+  // The one or two faces in a tetrahedron, away from its corners that are inside.
+  template <typename Between>
+  static void cut(const uint32_t (&corner)[4], uint32_t inside, const Between& between,
+                  Vector<Face>& out) {
+    uint32_t mask = 0;
+    for (uint32_t k = 0; k < 4; ++k) mask |= (inside >> corner[k] & 1) << k;
+    if (mask == 0 || mask == 15) return;
+    const auto on = [&](uint32_t j, uint32_t k) { return between(corner[j], corner[k]); };
+    for (uint32_t k = 0; k < 4; ++k) {
+      const auto& [a, b, c, d] = kOneFirst[k];
+      if (mask == 1U << a) out.push_back({on(a, b), on(a, c), on(a, d)});
+      if (mask == (15U ^ 1U << a)) out.push_back({on(a, b), on(a, d), on(a, c)});
+    }
+    // Even permutations with each pair first.
+    constexpr uint32_t kTwoFirst[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
+                                          {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};
+    for (const auto& [a, b, c, d] : kTwoFirst) {
+      if (mask != (1U << a | 1U << b)) continue;
+      const uint32_t quad[4] = {on(a, c), on(a, d), on(b, d), on(b, c)};
+      out.push_back({quad[0], quad[1], quad[2]});
+      out.push_back({quad[0], quad[2], quad[3]});
+    }
+  }
+
+  Lattice lattice_;
+  const Executor& executor_;
+  size_t layers_;
+  Vector<size_t> first_id_;  // per slice
+  Vector<float> xyz_;
+  Vector<Vector<Face>> faces_;
+};
+
+}  // namespace
+
+Status iso_surface(const ImageView& image, const LatticeValues& values, float iso,
+                   bool inside_above, const Executor& executor, Mesh& mesh) {
+  Builder builder(image, values, iso, inside_above, executor);
+  if (Status s = builder.count(); !s.ok()) return s;
+  builder.build(mesh);
+  return {};
+}
+
+Status iso_surface(const ImageView& image, float iso, bool inside_above, const Executor& executor,
+                   Mesh& mesh) {
+  const LatticeValues values{
+      [&](int32_t y, int32_t z, float* row) { image_row(image, y, z, row); },
+      [&](int32_t x, int32_t y, int32_t z) { return image_value(image, x, y, z); }};
+  return iso_surface(image, values, iso, inside_above, executor, mesh);
+}
+
+}  // namespace plc

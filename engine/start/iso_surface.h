@@ -1,0 +1,46 @@
+// The iso-surface of an image: the initial model of figure 23, and the surface of a mask or label.
+//
+// Marching tetrahedra on the six of Kuhn and Freudenthal around each cell's main diagonal. They are
+// the same from cell to cell, so the surface is that of a continuous function, linear in each:
+// closed and a manifold whatever the voxels are. Marching cubes needs a table of ambiguous cases
+// for that.
+#pragma once
+#include <cstdint>
+#include <functional>
+
+#include "engine/mesh/mesh.h"
+#include "kernels/image.h"
+#include "pyramid/executor.h"
+#include "pyramid/status.h"
+
+namespace plc {
+
+// A vertex on a lattice edge stays this part of the edge away from its ends, so that no face
+// degenerates and rounding has room. 0 would give faces of zero area, 1/2 a surface of steps.
+inline constexpr double kIsoMargin = 0.1;
+
+// Replaces what is in the mesh, but for delta, by the closed surface around the voxels that are
+// inside: of a value >= iso (inside_above) or <= iso; a NaN is outside. Faces are outward. What
+// reaches the image's border is closed half a voxel beyond it. Voxels that touch by a corner are
+// connected along (1,1,1), (1,1,0), (1,0,1), (0,1,1) and the axes, not along the other diagonals.
+//
+// Positions are of mesh space: voxel coordinate c = scale p + offset, scale > 0. Each image.dims >=
+// 1. Ids in scan order of the voxels, 7 edges to a voxel; memory O(vertices + a few slices per
+// thread); the same bits for any executor. About 4.5 vertices per square voxel of surface.
+//
+// Errors, the mesh unchanged: kInvalidData when all voxels are outside, kOutOfMemory for more
+// vertices than ids have room for; throws std::bad_alloc.
+Status iso_surface(const ImageView& image, float iso, bool inside_above, const Executor& executor,
+                   Mesh& mesh);
+
+// Values that are computed as they are asked for, by any thread: x fastest, as an image's.
+struct LatticeValues {
+  std::function<void(int32_t y, int32_t z, float* values)> row;
+  std::function<float(int32_t x, int32_t y, int32_t z)> at;  // the same values
+};
+
+// The same of such values; of `image` dims, scale and offset are read alone.
+Status iso_surface(const ImageView& image, const LatticeValues& values, float iso,
+                   bool inside_above, const Executor& executor, Mesh& mesh);
+
+}  // namespace plc

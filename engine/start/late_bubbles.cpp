@@ -1,0 +1,126 @@
+#include "engine/start/late_bubbles.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/base/constants.h"
+#include "engine/measure/measures.h"
+#include "engine/mesh/mesh_append.h"
+#include "engine/resolve/conform.h"
+#include "engine/start/iso_surface.h"
+#include "engine/start/missed_places.h"
+#include "kernels/image_value.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+namespace {
+
+// The part of the image around the places of one kind, with everything else turned to the other
+// side of iso. Its values are made as they are asked for: it may be as large as the image.
+class Cutout {
+ public:
+  Cutout(const ImageView& image, float iso, bool above, const MissedPlaces& places, Missed kind)
+      : image_(image),
+        iso_(iso),
+        up_(above == (kind == Missed::kPart)),
+        voxels_(places.voxels[static_cast<size_t>(kind)]),
+        view_(image) {
+    const auto k = static_cast<size_t>(kind);
+    for (size_t a = 0; a < 3; ++a) {
+      // The places end a voxel from the border of the cutout: what is beyond is outside.
+      first_[a] = places.low[k][a] - 1;
+      view_.dims[a] = places.high[k][a] - first_[a] + 2;
+      view_.offset[a] = image.offset[a] - static_cast<float>(first_[a]);
+    }
+  }
+  const ImageView& view() const { return view_; }  // dims, scale and offset
+  LatticeValues values() const {
+    return {[this](int32_t y, int32_t z, float* row) { read_row(y, z, row); },
+            [this](int32_t x, int32_t y, int32_t z) { return value(x, y, z); }};
+  }
+
+ private:
+  static constexpr float kLeast = 1e-6F;
+
+  // How far a value lies on the object's side of iso, for parts; on the other, for cavities.
+  float depth(float value) const { return up_ ? value - iso_ : iso_ - value; }
+  static float outside(float depth) { return -std::max(std::abs(depth), kLeast); }
+  static float inside(float depth) { return std::max(depth, 0.0F); }
+
+  bool in_image(const Voxel& v) const {
+    return v[0] >= 0 && v[1] >= 0 && v[2] >= 0 && v[0] < image_.dims[0] && v[1] < image_.dims[1] &&
+           v[2] < image_.dims[2];
+  }
+  float value(int32_t x, int32_t y, int32_t z) const {
+    const Voxel v{x + first_[0], y + first_[1], z + first_[2]};
+    if (!in_image(v)) return -1;
+    const float d = depth(image_value(image_, v[0], v[1], v[2]));
+    return voxels_.has(v) ? inside(d) : outside(d);
+  }
+  void read_row(int32_t y, int32_t z, float* values) const {
+    const int32_t width = view_.dims[0];
+    const int32_t row = y + first_[1], plane = z + first_[2];
+    std::fill_n(values, width, -1.0F);
+    if (!in_image({0, row, plane})) return;
+    const int32_t begin = std::max(first_[0], 0);
+    const int32_t end = std::min(first_[0] + width, image_.dims[0]);
+    Vector<float> own(static_cast<size_t>(image_.dims[0]));
+    image_row(image_, row, plane, own.data());
+    const auto to = [&](int32_t x) -> float& { return values[x - first_[0]]; };
+    for (int32_t x = begin; x < end; ++x) to(x) = outside(depth(own[static_cast<size_t>(x)]));
+    voxels_.visit_row(row, plane, begin, end,
+                      [&](int32_t x) { to(x) = inside(depth(own[static_cast<size_t>(x)])); });
+  }
+
+  const ImageView& image_;
+  float iso_;
+  bool up_;  // whether larger values lie inside
+  const VoxelSet& voxels_;
+  Voxel first_{};
+  ImageView view_;
+};
+
+double volume_of(const Mesh& mesh, const Executor& executor) {
+  Vector<float> xyz;
+  for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    const Vec3 p = mesh.at(v);
+    xyz.insert(xyz.end(), {p.x, p.y, p.z});
+  }
+  const Vector<uint32_t> faces = mesh.faces();
+  return surface_measures(xyz.data(), mesh.slots(), faces.data(), faces.size() / 3, executor)
+      .volume;
+}
+
+}  // namespace
+
+Status start_late_bubbles(const ImageView& image, float iso, bool inside_above,
+                          const Schedule& schedule, SimdTarget simd, Mesh& mesh, VoxelSet& tried,
+                          LateBubbles& started, OperationCounts& counts) {
+  const auto delta = static_cast<float>(mesh.delta);
+  // A vertex of an iso-surface lies at most 0.9 of a voxel's diagonal from a voxel of the place.
+  float diagonal = 0;
+  for (const float scale : image.scale) diagonal += 1 / (scale * scale);
+  const float clearance = kBubbleGap * delta + 0.9F * std::sqrt(diagonal);
+  const MissedPlaces places = find_missed_places(mesh, image, iso, inside_above, clearance,
+                                                 kSmallestBubble * delta, schedule, tried);
+  for (const Missed kind : {Missed::kPart, Missed::kCavity}) {
+    const int64_t count = places.count[static_cast<size_t>(kind)];
+    if (count == 0) continue;
+    const Cutout cutout(image, iso, inside_above, places, kind);
+    Mesh part;
+    if (Status s = iso_surface(cutout.view(), cutout.values(), 0, true, schedule, part); !s.ok()) {
+      return s;
+    }
+    Status s = conform(part, mesh.delta, schedule, simd, counts);
+    if (s.code() == ErrorCode::kInvalidData) continue;  // nothing is left of it
+    if (!s.ok()) return s;
+    (kind == Missed::kPart ? started.bubbles : started.cavities) += count;
+    started.volume += volume_of(part, schedule);
+    append_mesh(mesh, part, kind == Missed::kCavity, [](Vec3 p) { return p; });
+  }
+  return {};
+}
+
+}  // namespace plc

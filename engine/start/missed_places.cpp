@@ -1,0 +1,245 @@
+#include "engine/start/missed_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "engine/start/voxel_sides.h"
+#include "kernels/image_value.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+namespace {
+
+using Sets = std::array<VoxelSet, 2>;  // by Missed
+
+// The voxels on which the image and the surface disagree.
+class Disagreement {
+ public:
+  Disagreement(const Mesh& mesh, const ImageView& image, float iso, bool above)
+      : image_(image), iso_(iso), above_(above), sides_(mesh, image) {}
+
+  void add(int32_t z, Sets& missed) const {
+    constexpr size_t kWord = sizeof(uint64_t);
+    const auto width = static_cast<size_t>(image_.dims[0]);
+    Vector<float> values(width);
+    Vector<uint8_t> inside(width), differ((width + kWord - 1) / kWord * kWord, 0);
+    for (int32_t y = 0; y < image_.dims[1]; ++y) {
+      sides_.row(y, z, inside.data());
+      image_row(image_, y, z, values.data());
+      if (above_) {
+        for (size_t x = 0; x < width; ++x) differ[x] = inside[x] ^ uint8_t { values[x] >= iso_ };
+      } else {
+        for (size_t x = 0; x < width; ++x) differ[x] = inside[x] ^ uint8_t { values[x] <= iso_ };
+      }
+      for (size_t x = 0; x < width; x += kWord) {
+        uint64_t word = 0;
+        std::memcpy(&word, differ.data() + x, kWord);
+        if (word == 0) continue;
+        for (size_t i = x; i < x + kWord; ++i) {
+          if (differ[i] == 0) continue;
+          const Missed kind = inside[i] != 0 ? Missed::kCavity : Missed::kPart;
+          missed[static_cast<size_t>(kind)].insert({static_cast<int32_t>(i), y, z});
+        }
+      }
+    }
+  }
+
+ private:
+  const ImageView& image_;
+  float iso_;
+  bool above_;
+  VoxelSides sides_;
+};
+
+// What a place was found to be.
+struct Place {
+  bool holds = false;  // a ball
+  bool tried = false;
+  Voxel low, high;
+};
+
+class Search {
+ public:
+  Search(const ImageView& image, Sets& missed) : image_(image), missed_(missed) {
+    for (size_t a = 0; a < 3; ++a) length_[a] = 1 / image.scale[a];
+  }
+
+  // Nothing within `clearance` of a vertex is missed.
+  void clear_near(const Mesh& mesh, float clearance) {
+    for (uint32_t v = 0; v < mesh.slots(); ++v) {
+      if (!mesh.alive(v)) continue;
+      const Packed& p = mesh.packed[v];
+      const float at[3] = {p.x, p.y, p.z};
+      Voxel low, high;
+      std::array<float, 3> centre;
+      for (size_t a = 0; a < 3; ++a) {
+        centre[a] = image_.scale[a] * at[a] + image_.offset[a];
+        const float reach = clearance / length_[a];
+        low[a] = std::max(0, static_cast<int32_t>(std::ceil(centre[a] - reach)));
+        high[a] = std::min(image_.dims[a] - 1, static_cast<int32_t>(std::floor(centre[a] + reach)));
+      }
+      for (int32_t z = low[2]; z <= high[2]; ++z) {
+        for (int32_t y = low[1]; y <= high[1]; ++y) {
+          clear_row(centre, clearance, y, z, low[0], high[0]);
+        }
+      }
+    }
+  }
+
+  // The voxels whose boxes a ball touches, about a voxel's centre and about a corner of voxels.
+  void list_ball(float radius) {
+    Voxel most;
+    for (size_t a = 0; a < 3; ++a) {
+      most[a] = static_cast<int32_t>(std::ceil(radius / length_[a])) + 1;
+    }
+    for (int32_t z = -most[2]; z <= most[2]; ++z) {
+      for (int32_t y = -most[1]; y <= most[1]; ++y) {
+        for (int32_t x = -most[0]; x <= most[0]; ++x) {
+          const Voxel offset{x, y, z};
+          if (box_distance(offset, 0) < radius) around_.push_back(offset);
+          if (box_distance(offset, 0.5F) < radius) between_.push_back(offset);
+        }
+      }
+    }
+  }
+
+  // The place of the seed, taken out of `left`.
+  Place examine(const Voxel& seed, const VoxelSet& kind, const VoxelSet& tried, VoxelSet& left) {
+    Place place;
+    place.low = place.high = seed;
+    left.erase(seed);
+    flood(
+        seed,
+        [&](const Voxel& v) {
+          place.tried = place.tried || tried.has(v);
+          place.holds = place.holds || free(v, kind, around_) || free(v, kind, between_);
+          for (size_t a = 0; a < 3; ++a) {
+            place.low[a] = std::min(place.low[a], v[a]);
+            place.high[a] = std::max(place.high[a], v[a]);
+          }
+        },
+        [&](const Voxel& v) {
+          const bool found = left.has(v);
+          if (found) left.erase(v);
+          return found;
+        });
+    return place;
+  }
+
+  // Puts the place of the seed into both sets.
+  void keep(const Voxel& seed, const VoxelSet& kind, VoxelSet& kept, VoxelSet& tried) {
+    kept.insert(seed);
+    flood(
+        seed, [&](const Voxel& v) { tried.insert(v); },
+        [&](const Voxel& v) {
+          const bool found = kind.has(v) && !kept.has(v);
+          if (found) kept.insert(v);
+          return found;
+        });
+  }
+
+ private:
+  void clear_row(const std::array<float, 3>& centre, float clearance, int32_t y, int32_t z,
+                 int32_t low, int32_t high) {
+    for (VoxelSet& set : missed_) {
+      set.visit_row(y, z, low, high + 1, [&](int32_t x) {
+        const float dx = (static_cast<float>(x) - centre[0]) * length_[0];
+        const float dy = (static_cast<float>(y) - centre[1]) * length_[1];
+        const float dz = (static_cast<float>(z) - centre[2]) * length_[2];
+        if (dx * dx + dy * dy + dz * dz < clearance * clearance) set.erase({x, y, z});
+      });
+    }
+  }
+
+  // visit(voxel) for the seed and what is connected to it; take(voxel) tells whether a neighbour is
+  // of the place and new. Only the front is kept in memory.
+  template <typename Visit, typename Take>
+  void flood(const Voxel& seed, const Visit& visit, const Take& take) {
+    front_.assign(1, seed);
+    while (!front_.empty()) {
+      next_.clear();
+      for (const Voxel& at : front_) {
+        visit(at);
+        for (int32_t z = -1; z <= 1; ++z) {
+          for (int32_t y = -1; y <= 1; ++y) {
+            for (int32_t x = -1; x <= 1; ++x) {
+              const Voxel v{at[0] + x, at[1] + y, at[2] + z};
+              if (within(v) && take(v)) next_.push_back(v);
+            }
+          }
+        }
+      }
+      front_.swap(next_);
+    }
+  }
+
+  bool within(const Voxel& v) const {
+    for (size_t a = 0; a < 3; ++a) {
+      if (v[a] < 0 || v[a] >= image_.dims[a]) return false;
+    }
+    return true;
+  }
+
+  float box_distance(const Voxel& offset, float shift) const {
+    float squared = 0;
+    for (size_t a = 0; a < 3; ++a) {
+      const float away = std::abs(static_cast<float>(offset[a]) - shift) - 0.5F;
+      const float gap = std::max(away, 0.0F) * length_[a];
+      squared += gap * gap;
+    }
+    return std::sqrt(squared);
+  }
+
+  bool free(const Voxel& at, const VoxelSet& kind, const Vector<Voxel>& ball) const {
+    return std::all_of(ball.begin(), ball.end(), [&](const Voxel& o) {
+      const Voxel v{at[0] + o[0], at[1] + o[1], at[2] + o[2]};
+      return within(v) && kind.has(v);
+    });
+  }
+
+  const ImageView& image_;
+  Sets& missed_;
+  std::array<float, 3> length_{};  // of a voxel, mesh units
+  Vector<Voxel> around_, between_;
+  Vector<Voxel> front_, next_;
+};
+
+}  // namespace
+
+MissedPlaces find_missed_places(const Mesh& mesh, const ImageView& image, float iso,
+                                bool inside_above, float clearance, float radius,
+                                const Executor& executor, VoxelSet& tried) {
+  Sets missed{VoxelSet(image.dims), VoxelSet(image.dims)};
+  {
+    const Disagreement disagreement(mesh, image, iso, inside_above);
+    executor.run(static_cast<size_t>(image.dims[2]),
+                 [&](size_t z) { disagreement.add(static_cast<int32_t>(z), missed); });
+  }
+  Search search(image, missed);
+  search.clear_near(mesh, clearance);
+  search.list_ball(radius);
+  MissedPlaces places;
+  places.low.fill({image.dims[0], image.dims[1], image.dims[2]});
+  places.high.fill({-1, -1, -1});
+  if (!tried.has_image()) tried = VoxelSet(image.dims);
+  for (size_t k = 0; k < 2; ++k) {
+    places.voxels[k] = VoxelSet(image.dims);
+    VoxelSet left(missed[k]);
+    left.visit([&](const Voxel& seed) {
+      const Place place = search.examine(seed, missed[k], tried, left);
+      if (!place.holds || place.tried) return;
+      ++places.count[k];
+      search.keep(seed, missed[k], places.voxels[k], tried);
+      for (size_t a = 0; a < 3; ++a) {
+        places.low[k][a] = std::min(places.low[k][a], place.low[a]);
+        places.high[k][a] = std::max(places.high[k][a], place.high[a]);
+      }
+    });
+  }
+  return places;
+}
+
+}  // namespace plc

@@ -1,0 +1,33 @@
+// Where an image and a surface disagree about the side, too far from the surface to be its matter.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "engine/mesh/mesh.h"
+#include "engine/start/voxel_set.h"
+#include "kernels/image.h"
+#include "pyramid/executor.h"
+
+namespace plc {
+
+enum class Missed : uint8_t { kPart, kCavity };
+
+struct MissedPlaces {
+  std::array<VoxelSet, 2> voxels;      // of the places of each kind that are to get a bubble
+  std::array<int64_t, 2> count{0, 0};  // places of each kind
+  // Their box, voxels; low > high where there are none.
+  std::array<Voxel, 2> low, high;
+
+  bool is(const Voxel& voxel, Missed m) const { return voxels[static_cast<size_t>(m)].has(voxel); }
+};
+
+// Places are sets of voxels connected by faces, edges or corners: of the object (a value >= iso, or
+// <= iso), outside the surface - or not of it, and inside - and none within `clearance` of a vertex
+// (mesh units). Those that hold no ball of `radius`, and those with a voxel that `tried` holds, are
+// left out; the others are put into it, which is of the image's voxels or of none yet. The same for
+// any executor.
+MissedPlaces find_missed_places(const Mesh& mesh, const ImageView& image, float iso,
+                                bool inside_above, float clearance, float radius,
+                                const Executor& executor, VoxelSet& tried);
+
+}  // namespace plc

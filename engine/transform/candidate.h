@@ -1,0 +1,46 @@
+// A transformation that a violated constraint asks for, found by reading only.
+#pragma once
+#include <cstdint>
+#include <cstring>
+
+#include "engine/transform/edge.h"
+
+namespace plc {
+
+// In the order in which they are resolved: annular before axial (3.3).
+enum class Operation : uint8_t {
+  kAnnular,    // cycle u, v, a
+  kDeletion,   // of edge u-v
+  kInversion,  // of edge u-v
+  kCreation,   // on edge u-v
+  kAxial       // between u and v
+};
+
+struct Candidate;
+// Whether no vertex would get more neighbours than it may have; axial ones with a few to spare.
+bool fits_neighbors(const Mesh& mesh, const Candidate& candidate);
+
+struct Candidate {
+  Operation operation;
+  float key;  // squared length or distance; negated where the longest comes first
+  Edge edge;
+
+  // The total order of a pass: no two candidates of a pass compare equal.
+  friend bool operator<(const Candidate& l, const Candidate& r) {
+    const uint64_t of_l = l.rank(), of_r = r.rank();
+    return of_l != of_r ? of_l < of_r : l.ends() < r.ends();
+  }
+
+ private:
+  // In the order of the operation, then of the key: floats of one sign have the order of their
+  // bits.
+  uint64_t rank() const {
+    uint32_t bits;
+    std::memcpy(&bits, &key, sizeof bits);
+    bits ^= key < 0 ? ~0U : 1U << 31;
+    return uint64_t{static_cast<uint8_t>(operation)} << 32 | bits;
+  }
+  uint64_t ends() const { return uint64_t{edge.u} << 32 | edge.v; }
+};
+
+}  // namespace plc

@@ -1,0 +1,198 @@
+#include "engine/guard/motion_guard.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "engine/base/constants.h"
+#include "engine/detect/surroundings.h"
+#include "engine/transform/edge.h"
+#include "pyramid/memory.h"
+#include "tests/samples/kernel_fixtures.h"
+#include "tests/samples/sample_surfaces.h"
+#include "tests/samples/sample_volumes.h"
+
+namespace {
+
+using plc::Mesh;
+using plc::Vec3;
+using samples::Soup;
+
+// What Evolution does around a movement: normals of its start, the table and risks of its end.
+class Movement {
+ public:
+  explicit Movement(Mesh& mesh) : mesh_(mesh), before_(mesh.packed) {
+    for (uint32_t v = 0; v < mesh.slots(); ++v) {
+      if (mesh.alive(v)) mesh.normal.set(v, plc::vertex_normal(mesh, v));
+    }
+  }
+  void move(uint32_t v, Vec3 by) {
+    mesh_.place(v, mesh_.at(v) + by);
+    mesh_.velocity.set(v, by);
+  }
+  int64_t guard(const plc::Executor& executor = samples::kSerial) {
+    plc::MotionGuard guard(mesh_, executor, plc::best_simd_target());
+    hash_.build(mesh_, plc::kMinApart * static_cast<float>(mesh_.delta), executor);
+    plc::Vector<uint32_t> due;
+    for (uint32_t v = 0; v < mesh_.slots(); ++v) {
+      if (mesh_.alive(v)) due.push_back(v);
+    }
+    plc::Surroundings around(mesh_, executor, plc::best_simd_target());
+    around.search(due, hash_);
+    plc::Vector<uint32_t> blocks(mesh_.padded() / plc::kRingLanes);
+    std::iota(blocks.begin(), blocks.end(), 0U);
+    guard.find_folds(blocks);
+    guard.assess(due, around.at_risk());
+    plc::Vector<uint32_t> back;
+    const int64_t count = guard.take_back(before_, hash_, back);
+    CHECK(static_cast<int64_t>(back.size()) == count);
+    for (const uint32_t v : back) CHECK(is_back(v));
+    return count;
+  }
+  bool is_back(uint32_t v) const {
+    const plc::Packed& p = mesh_.packed[v];
+    return p.x == before_[v].x && p.y == before_[v].y && p.z == before_[v].z;
+  }
+  plc::SpatialHash& hash() { return hash_; }
+
+ private:
+  Mesh& mesh_;
+  plc::Buffer<plc::Packed> before_;
+  plc::SpatialHash hash_;
+};
+
+constexpr double kDelta = 0.16;  // edges of sphere(3) are 0.19 .. 0.28
+
+Soup spheres(double gap) {
+  Soup soup = samples::sphere(3);
+  soup.append(samples::moved(samples::sphere(3), 0.03, 0.02, 2 + gap));
+  return soup;
+}
+
+}  // namespace
+
+TEST_CASE("a movement that keeps the surface apart stays", "[motion_guard]") {
+  Mesh mesh;
+  samples::fill_mesh(mesh, spheres(0.3), kDelta);
+  Movement movement(mesh);
+  for (uint32_t v = 0; v < mesh.slots(); ++v) movement.move(v, {0.02F, 0, 0});
+  CHECK(movement.guard() == 0);
+  for (uint32_t v = 0; v < mesh.slots(); ++v) CHECK_FALSE(movement.is_back(v));
+}
+
+TEST_CASE("parts that have gone into each other go back and lose their speed", "[motion_guard]") {
+  Mesh mesh;
+  samples::fill_mesh(mesh, spheres(0.05), kDelta);
+  REQUIRE(samples::meeting_count(mesh) == 0);
+  Movement movement(mesh);
+  for (uint32_t v = 258; v < mesh.slots(); ++v) movement.move(v, {0, 0, -0.06F});
+  REQUIRE(samples::meeting_count(mesh) > 0);
+  const int64_t back = movement.guard();
+  CHECK(samples::meeting_count(mesh) == 0);
+  int64_t counted = 0;
+  for (uint32_t v = 258; v < mesh.slots(); ++v) {
+    if (!movement.is_back(v)) continue;
+    ++counted;
+    CHECK(plc::length(mesh.velocity.at(v)) == 0);
+    // The table has it where it is now.
+    bool found = false;
+    movement.hash().visit_box(mesh, mesh.at(v), mesh.at(v),
+                              [&](uint32_t w, Vec3) { found = found || w == v; });
+    CHECK(found);
+  }
+  CHECK(counted == back);
+  CHECK(back > 0);
+  CHECK(back < 100);  // the far sides stay moved
+  CHECK(plc::broken_invariant(mesh) == "");
+}
+
+TEST_CASE("a vertex pushed through the far side goes back", "[motion_guard]") {
+  Mesh mesh;
+  samples::fill_mesh(mesh, samples::sphere(3), kDelta);
+  Movement movement(mesh);
+  movement.move(100, mesh.at(100) * -2.1F);
+  REQUIRE(samples::meeting_count(mesh) > 0);
+  CHECK(movement.guard() == 1);
+  CHECK(movement.is_back(100));
+  CHECK(samples::meeting_count(mesh) == 0);
+}
+
+TEST_CASE("after any movement within the bound nothing meets", "[motion_guard]") {
+  int64_t meeting = 0;
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    samples::Random random(seed);
+    Soup soup = seed % 2 == 0 ? spheres(random.uniform(0.02, 0.2)) : samples::torus(28, 8, 1, 0.25);
+    if (seed % 3 == 0) {
+      // Flat: both sides of it near.
+      for (size_t i = 2; i < soup.xyz.size(); i += 3) soup.xyz[i] *= 0.3;
+    }
+    Mesh mesh;
+    samples::fill_mesh(mesh, soup, kDelta);
+    if (samples::meeting_count(mesh) != 0) continue;
+    Movement movement(mesh);
+    const double most = random.uniform(0.1, 0.8) * kDelta;
+    const Vec3 drift{0, 0, static_cast<float>(random.uniform(-1, 1) * most)};
+    for (uint32_t v = 0; v < mesh.slots(); ++v) {
+      const auto part = [&] { return static_cast<float>(random.uniform(-0.5, 0.5) * most); };
+      movement.move(v, Vec3{part(), part(), part()} + (v % 2 == 0 ? drift : drift * -1));
+    }
+    meeting += static_cast<int64_t>(samples::meeting_count(mesh));
+    movement.guard();
+    CAPTURE(seed);
+    CHECK(samples::meeting_count(mesh) == 0);
+  }
+  CHECK(meeting > 1000);
+}
+
+TEST_CASE("in the worst case all are back where they started", "[motion_guard]") {
+  Mesh mesh;
+  samples::fill_mesh(mesh, samples::sphere(3), kDelta);
+  Movement movement(mesh);
+  samples::Random random(21);
+  for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    const auto part = [&] { return static_cast<float>(random.uniform(-0.5, 0.5)); };
+    movement.move(v, {part(), part(), part()});
+  }
+  movement.guard();
+  CHECK(samples::meeting_count(mesh) == 0);
+  for (uint32_t v = 0; v < mesh.slots(); ++v) CHECK(movement.is_back(v));
+}
+
+TEST_CASE("what is taken back does not depend on the executor", "[motion_guard]") {
+  Mesh one, other;
+  for (Mesh* mesh : {&one, &other}) {
+    samples::fill_mesh(*mesh, spheres(0.05), kDelta);
+    Movement movement(*mesh);
+    samples::Random random(22);
+    for (uint32_t v = 0; v < mesh->slots(); ++v) {
+      const auto part = [&] { return static_cast<float>(random.uniform(-0.06, 0.06)); };
+      movement.move(v, {part(), part(), part()});
+    }
+    if (mesh == &one) {
+      CHECK(movement.guard() > 0);
+    } else {
+      movement.guard(fixtures::ThreadExecutor(3));
+    }
+  }
+  for (uint32_t v = 0; v < one.slots(); ++v) {
+    CHECK(plc::squared_distance(one.at(v), other.at(v)) == 0);
+  }
+}
+
+TEST_CASE("only the risk of vertices that are due is looked at again", "[motion_guard]") {
+  Mesh mesh;
+  samples::fill_mesh(mesh, samples::sphere(3), kDelta);
+  for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    mesh.normal.set(v, plc::vertex_normal(mesh, v));
+    mesh.risk[v] = 1;
+  }
+  plc::MotionGuard guard(mesh, samples::kSerial, plc::best_simd_target());
+  plc::SpatialHash hash;
+  hash.build(mesh, plc::kMinApart * static_cast<float>(kDelta), samples::kSerial);
+  plc::Surroundings around(mesh, samples::kSerial, plc::best_simd_target());
+  around.search({3, 50}, hash);
+  guard.assess({3, 50}, around.at_risk());
+  for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    CHECK(mesh.risk[v] == (v == 3 || v == 50 ? 0 : 1));
+  }
+}

@@ -1,0 +1,164 @@
+// The fused stage against the kernels that it stands for, one after the other.
+#include "kernels/guided_stage.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "kernels/image_force.h"
+#include "kernels/ring_forces.h"
+#include "kernels/scalar.h"
+#include "pyramid/memory.h"
+#include "tests/samples/kernel_fixtures.h"
+
+namespace {
+
+using namespace fixtures;
+using plc::Blocks;
+using plc::Packed;
+using plc::SimdTarget;
+namespace kernels = plc::kernels;
+namespace scalar = plc::kernels::scalar;
+
+constexpr kernels::Rk4Coefficients kNewton{1.0F / 0.7F, 0.45F, 0.9F};
+constexpr kernels::MoveBound kBound{2.5F, 3.5F};
+constexpr uint32_t kBlocks = 240;  // more than kernels fetch ahead
+
+// A stage of a step in full swing.
+struct Stage {
+  RandomRings rings = mixed_rings(kBlocks, 31);
+  std::vector<float> image = random_floats(size_t{60} * 50 * 40, 0, 1, 32);
+  std::vector<Packed> laplacian, next, moved_to;
+  std::vector<float> streams[21], path;
+  kernels::Movement movement;
+
+  Stage() : laplacian(rings.count()), next(laplacian), moved_to(laplacian), path(rings.count()) {
+    for (uint32_t i = 0; i < 21; ++i) streams[i] = random_floats(rings.count(), -3, 3, 40 + i);
+    scalar::laplacian(rings.view(), rings.position.data(), all(), laplacian.data());
+  }
+  Blocks all() const { return Blocks::range(0, rings.count()); }
+  kernels::Float3s three(size_t i) {
+    return {streams[i].data(), streams[i + 1].data(), streams[i + 2].data()};
+  }
+  kernels::ConstFloat3s fixed(size_t i) const {
+    return {streams[i].data(), streams[i + 1].data(), streams[i + 2].data()};
+  }
+  kernels::Rk4Streams rk4() {
+    return {rings.position.data(), fixed(0), three(3), three(6), three(9), next.data()};
+  }
+  kernels::SurfaceForces forces() const {
+    return {rings.view(),
+            laplacian.data(),
+            0.3F,
+            {image.data(), {60, 50, 40}, {0.2F, 0.2F, 0.2F}, {3, 4, 5}},
+            rings.position.data(),
+            fixed(12),
+            -1.2F,
+            0.4F};
+  }
+  kernels::MoveStreams ends() {
+    return {rings.position.data(), moved_to.data(), three(0), fixed(15), path.data()};
+  }
+  std::vector<float> result() const {
+    std::vector<float> values = flatten(next);
+    const std::vector<float> places = flatten(moved_to);
+    values.insert(values.end(), places.begin(), places.end());
+    for (size_t i = 0; i < 9; ++i) {
+      values.insert(values.end(), streams[i].begin(), streams[i].end());
+    }
+    values.insert(values.end(), path.begin(), path.end());
+    return values;
+  }
+  const std::vector<float>& rate(size_t axis) const { return streams[9 + axis]; }
+
+  // The same by the kernels of one force each.
+  void apart(int stage) {
+    const kernels::SurfaceForces f = forces();
+    const kernels::Float3s force = three(18);
+    const uint32_t n = rings.count();
+    scalar::curvature_force(f.ring, f.laplacian, f.curvature, 0, n, force.x, force.y, force.z);
+    scalar::iso_force(f.image, f.position, f.normal.x, f.normal.y, f.normal.z, f.attraction, f.iso,
+                      0, n, force.x, force.y, force.z);
+    scalar::rk4_stage(stage, kNewton, rk4(), fixed(18), all());
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a guided stage has the bits of its forces and its update one after the other",
+          "[kernels]") {
+  for (int stage = 0; stage < 4; ++stage) {
+    Stage expected;
+    expected.apart(stage);
+    for (const SimdTarget simd : plc::available_simd_targets()) {
+      CAPTURE(plc::simd_target_name(simd), stage);
+      Stage got;
+      kernels::guided_stage(simd, stage, kNewton, got.forces(), got.rk4(), got.all());
+      CHECK(first_difference(got.result(), expected.result()) == -1);
+      for (size_t a = 0; a < 3; ++a) {
+        CHECK(first_difference(got.rate(a), expected.rate(a)) == -1);
+      }
+    }
+  }
+}
+
+TEST_CASE("a guided move is the last stage and the move, and writes no rates", "[kernels]") {
+  Stage expected;
+  const Stage before;
+  expected.apart(3);
+  expected.movement =
+      scalar::move(kBound, expected.three(6), expected.fixed(9), expected.ends(), expected.all());
+  CHECK(expected.movement.energy > 0);
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    CAPTURE(plc::simd_target_name(simd));
+    Stage got;
+    got.movement =
+        kernels::guided_move(simd, kNewton, got.forces(), got.rk4(), kBound, got.ends(), got.all());
+    CHECK(first_difference(got.result(), expected.result()) == -1);
+    CHECK(first_difference(got.rate(1), before.rate(1)) == -1);
+    CHECK(got.movement.energy == expected.movement.energy);
+    CHECK(got.movement.longest2 == expected.movement.longest2);
+  }
+}
+
+TEST_CASE("listed blocks move alike, and no others", "[kernels]") {
+  const plc::Vector<uint32_t> list = {0, 1, 5, 6, 7, 23, 239};
+  const Blocks blocks{list.data(), list.size()};
+  Stage whole;
+  scalar::guided_stage(1, kNewton, whole.forces(), whole.rk4(), whole.all());
+  const Stage before;
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    CAPTURE(plc::simd_target_name(simd));
+    Stage got;
+    kernels::guided_stage(simd, 1, kNewton, got.forces(), got.rk4(), blocks);
+    for (uint32_t v = 0; v < got.rings.count(); ++v) {
+      const bool listed = std::find(list.begin(), list.end(), v / plc::kRingLanes) != list.end();
+      const Stage& from = listed ? whole : before;
+      REQUIRE(got.next[v].x == from.next[v].x);
+      REQUIRE(got.streams[6][v] == from.streams[6][v]);
+      REQUIRE(got.rate(2)[v] == from.rate(2)[v]);
+    }
+  }
+}
+
+TEST_CASE("tasks of a list move their own blocks only, and together all of it", "[kernels]") {
+  plc::Vector<uint32_t> list;
+  for (uint32_t block = 0; block < kBlocks; block += block % 3 + 1) list.push_back(block);
+  Stage whole;
+  scalar::guided_stage(1, kNewton, whole.forces(), whole.rk4(), {list.data(), list.size()});
+  const size_t middle = list.size() / 3;
+  const Stage before;
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    CAPTURE(plc::simd_target_name(simd));
+    Stage got;
+    const auto run = [&](size_t begin, size_t end) {
+      kernels::guided_stage(simd, 1, kNewton, got.forces(), got.rk4(),
+                            Blocks::of(list.data(), list.size(), begin, end));
+    };
+    run(middle, list.size());
+    const uint32_t first = list[middle] * plc::kRingLanes;
+    CHECK(got.next[first].x == whole.next[first].x);
+    for (uint32_t v = 0; v < first; ++v) REQUIRE(got.next[v].x == before.next[v].x);
+    run(0, middle);
+    CHECK(first_difference(got.result(), whole.result()) == -1);
+  }
+}

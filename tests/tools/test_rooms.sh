@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# Who may include whom: the project's files as they are, and made-up ones that tools/rooms must not let
+# pass.   tests/tools/test_rooms.sh
+set -uo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+here=$(mktemp -d)
+trap 'rm -rf "$here"' EXIT
+failures=0
+fails() { echo "FAILED: $1"; failures=$((failures + 1)); }
+
+"$root/tools/rooms" || fails "the project's own files"
+
+# made FILE INCLUDED: a folder with that file alone.
+made() {
+  rm -rf "$here/made"
+  mkdir -p "$here/made/$(dirname "$1")"
+  printf '#pragma once\n#include "%s"\n' "$2" >"$here/made/$1"
+}
+passes() {
+  made "$1" "$2"
+  "$root/tools/rooms" "$here/made" >"$here/said" || fails "$1 may include $2: $(cat "$here/said")"
+}
+refuses() {  # FILE INCLUDED WHAT
+  made "$1" "$2"
+  "$root/tools/rooms" "$here/made" >"$here/said" && fails "$1 may not include $2"
+  grep -qF -- "$1: $3" "$here/said" || fails "of $1 and $2 it says: $(cat "$here/said")"
+}
+
+passes engine/guard/made.h engine/mesh/mesh.h
+passes engine/mesh/made.h engine/mesh/mesh.h
+passes engine/base/made.h pyramid/executor.h
+passes engine/api/made.h engine/pellicle.h
+passes tools/mesh/made.h engine/pellicle.h
+passes tools/command/made.h tools/file/failure.h
+passes tests/mesh/made.h engine/api/handles.h
+refuses engine/mesh/made.h engine/guard/trials.h 'includes engine/guard/trials.h: engine/guard/ is above'
+refuses pyramid/made.h engine/base/vec3.h 'includes engine/base/vec3.h: engine/base/ is above'
+refuses kernels/made.cpp pyramid/buffer.h 'includes pyramid/buffer.h: pyramid/ is above'
+refuses engine/mesh/made.h engine/pellicle.h 'includes engine/pellicle.h, which is for'
+refuses engine/made.h engine/mesh/mesh.h 'is in no room'
+refuses engine/other/made.h engine/mesh/mesh.h 'is in no room'
+refuses engine/mesh/made.h engine/mesh.h 'includes engine/mesh.h, which is in no room'
+refuses engine/mesh/made.h mesh.h 'includes mesh.h: paths begin at the root'
+refuses engine/guard/made.h ../mesh/mesh.h 'includes ../mesh/mesh.h: paths begin at the root'
+refuses tools/mesh/made.h tools/volume/volume_io.h 'includes tools/volume/volume_io.h: tools/volume/ is above'
+refuses tools/mesh/made.h engine/mesh/mesh.h 'includes engine/mesh/mesh.h: hosts include nothing'
+refuses tools/command/made.h tests/samples/sample_files.h 'includes tests/samples/sample_files.h: nobody includes tests/'
+refuses engine/pellicle.h engine/mesh/mesh.h 'includes engine/mesh/mesh.h: hosts have no other file'
+
+# The drawing is that of the includes.
+made engine/guard/made.h engine/mesh/mesh.h
+printf '<!-- tools/rooms --draw -->\n<!-- end -->\n' >"$here/made/engine/README.md"
+"$root/tools/rooms" "$here/made" >/dev/null && fails "a drawing that is not there passes"
+"$root/tools/rooms" --draw "$here/made" >/dev/null || fails "no drawing"
+"$root/tools/rooms" "$here/made" >/dev/null || fails "its own drawing does not pass"
+grep -q 'guard --> mesh' "$here/made/engine/README.md" || fails "the drawing has no guard --> mesh"
+
+[ $failures -eq 0 ] && echo "rooms: every made-up include is told"
+exit $((failures > 0))

@@ -1,0 +1,217 @@
+#include "tools/command/command_extract.h"
+
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/command/command_labels.h"
+#include "tools/command/engine_handles.h"
+#include "tools/command/extract_inputs.h"
+#include "tools/command/extract_job.h"
+#include "tools/command/mesh_precision.h"
+#include "tools/command/progress_line.h"
+#include "tools/command/report.h"
+#include "tools/command/surface_mesh.h"
+#include "tools/command/trace_file.h"
+#include "tools/file/failure.h"
+#include "tools/file/memory.h"
+#include "tools/mesh/mesh_io.h"
+#include "tools/volume/volume_io.h"
+
+namespace plc::tools {
+
+namespace {
+
+double now() {
+  using Clock = std::chrono::steady_clock;
+  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+}
+
+struct Watch {
+  ProgressLine& line;
+  TraceFile& trace;
+  const InterruptGuard& interrupt;
+};
+
+int on_progress(const plc_progress* progress, void* user) {
+  auto& watch = *static_cast<Watch*>(user);
+  watch.line.update(*progress);
+  watch.trace.add(*progress);
+  return watch.interrupt.interrupted() ? 1 : 0;
+}
+
+// What the surface will cost, where that is out of proportion. How levels end the summary says.
+void on_log(plc_log_level level, const char* line, void*) {
+  if (level != PLC_LOG_WARNING || std::strncmp(line, "expected: ", 10) != 0) return;
+  std::fprintf(stderr, "pellicle: %s\n", line);
+}
+
+// The files of --each-level: a callback must not throw through the engine, so it keeps the failure.
+struct LevelFiles {
+  plc_context* context;
+  const std::string& output;
+  plc_space space;
+  std::optional<Failure> failure;
+};
+
+plc_verdict on_level(const plc_level_report* level, const plc_surface* surface, void* user) {
+  auto& files = *static_cast<LevelFiles*>(user);
+  try {
+    const std::string path = named(files.output, "level" + std::to_string(level->level));
+    TriangleMesh mesh = mesh_of(files.context, surface, files.space);
+    settle_surface(files.context, mesh, files.space, path);
+    write_mesh(path, mesh);
+  } catch (const Failure& failure) {
+    files.failure = failure;
+    return PLC_VERDICT_STOP;
+  }
+  return PLC_VERDICT_ACCEPT;
+}
+
+// NULL where it was cancelled.
+SurfaceHandle evolve(plc_context* context, const plc_image& image, const ExtractJob& job,
+                     const ExtractInputs& inputs, const ExtractOptions& options, ProgressLine& line,
+                     TraceFile& trace, const InterruptGuard& interrupt) {
+  Watch watch{line, trace, interrupt};
+  plc_extras extras = inputs.extras();
+  extras.progress = on_progress;
+  extras.progress_user = &watch;
+  LevelFiles files{context, job.output, options.space, std::nullopt};
+  if (options.each_level) {
+    extras.level = on_level;
+    extras.level_user = &files;
+  }
+  plc_surface* surface = nullptr;
+  const plc_status status = plc_extract(context, &image, &job.parameters, &extras, &surface);
+  if (status == PLC_CANCELLED) return nullptr;
+  if (status != PLC_OK) throw failure_of(context);
+  SurfaceHandle result(surface);
+  if (files.failure) throw *files.failure;
+  return result;
+}
+
+// Before the long run rather than after it.
+void check_paths(const std::vector<ExtractJob>& jobs) {
+  for (const ExtractJob& job : jobs) {
+    check_mesh_path(job.output);
+    if (!job.report.empty()) check_report_path(job.report);
+  }
+}
+
+class Extraction {
+ public:
+  Extraction(const ExtractOptions& options, InterruptGuard& interrupt)
+      : options_(options), interrupt_(interrupt), jobs_(jobs_of(options)) {
+    check_paths(jobs_);
+    for (const ExtractJob& job : jobs_) traces_.emplace_back(job.trace);
+    interrupt.end_at_once();
+    volume_ = read_volume_apart(options.input, options.nifti_frame);
+    print_warnings(volume_);
+    inputs_.emplace(options);
+    context_ = make_context(context_options());  // from here on there are threads
+    read_ = now() - start_;
+  }
+
+  // The exit code.
+  int run() {
+    for (size_t i = 0; i < jobs_.size(); ++i) {
+      if (const int code = run(i); code != 0) return code;
+    }
+    return 0;
+  }
+
+ private:
+  // What the machine has not is refused in a line, before the system ends the process without one.
+  plc_context_options context_options() const {
+    plc_context_options context = options_.context;
+    context.memory_limit = static_cast<int64_t>(available_memory());
+    if (options_.progress != Progress::kNone) context.log = on_log;
+    return context;
+  }
+
+  int run(size_t index) {
+    ExtractJob job = jobs_[index];
+    ExtractOptions told = options_;
+    if (job.follows) follow(index, job, told);
+    interrupt_.note_first();
+    ProgressLine line(options_.progress);
+    surface_ = evolve(context_.get(), volume_.image, job, *inputs_, options_, line, traces_[index],
+                      interrupt_);
+    line.clear();
+    if (surface_ == nullptr || interrupt_.interrupted()) return interrupt_.tell();
+    if (plc_surface_face_count(surface_.get()) == 0) {
+      throw Failure{"no surface is left: at this iso the object is smaller than the mesh resolves"};
+    }
+    write(job, traces_[index], told);
+    line.done();
+    return 0;
+  }
+
+  // Figure 24: from the last surface, on the full image, where that is nearer.
+  void follow(size_t index, ExtractJob& job, ExtractOptions& told) {
+    plc_parameters& p = job.parameters;
+    const double last = jobs_[index - 1].parameters.iso;
+    if (!nearer(volume_.image, last, p.iso, p.inside_below != 0)) return;
+    TriangleMesh start = mesh_of(context_.get(), surface_.get(), options_.space);
+    if (!doubles_) round_to_floats(start.xyz);  // as that of the file is
+    inputs_->start_from(std::move(start));
+    p.init = PLC_INIT_MESH;
+    p.levels = 0;
+    p.level_iso_count = 0;
+    told.init_file = jobs_[index - 1].output;
+  }
+
+  // What is written from here on is whole; a signal waits for it.
+  void write(const ExtractJob& job, const TraceFile& trace, const ExtractOptions& told) {
+    interrupt_.only_note();
+    const double written = now();
+    const plc_measures measures = measures_of(context_.get(), surface_.get());
+    TriangleMesh mesh = mesh_of(context_.get(), surface_.get(), options_.space);
+    // The engine's promise is about its own mesh space; this one is rounded to another.
+    settle_surface(context_.get(), mesh, options_.space, job.output);
+    doubles_ = mesh.doubles;
+    write_mesh(job.output, mesh);
+    trace.commit();
+    const Timings timings{read_, now() - written, now() - start_};
+    if (!job.report.empty()) {
+      auto report =
+          make_report(context_.get(), volume_.image, surface_.get(), measures, timings, told);
+      report["coordinates"] = precision_text(doubles_);
+      write_report(job.report, report);
+    }
+    if (options_.progress != Progress::kNone) {
+      std::fputs(
+          summary(context_.get(), volume_.image, surface_.get(), measures, timings, job.output)
+              .c_str(),
+          stdout);
+      std::fflush(stdout);
+    }
+    tell_precision(doubles_, job.output);
+  }
+
+  const ExtractOptions& options_;
+  InterruptGuard& interrupt_;
+  double start_ = now();
+  double read_ = 0;
+  std::vector<ExtractJob> jobs_;
+  std::vector<TraceFile> traces_;
+  ContextHandle context_;
+  LoadedVolume volume_{};
+  std::optional<ExtractInputs> inputs_;
+  SurfaceHandle surface_;  // the last one
+  bool doubles_ = false;   // it was written in
+};
+
+}  // namespace
+
+int run_extract(const ExtractOptions& options, InterruptGuard& interrupt) {
+  if (!options.labels.empty()) return run_labels(options, interrupt);
+  return Extraction(options, interrupt).run();
+}
+
+}  // namespace plc::tools

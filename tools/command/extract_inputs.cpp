@@ -1,0 +1,33 @@
+#include "tools/command/extract_inputs.h"
+
+namespace plc::tools {
+
+ExtractInputs::ExtractInputs(const ExtractOptions& options)
+    : space_(options.space), seeds_(options.seeds) {
+  if (!options.attach.empty()) attach_ = read_attach_file(options.attach);
+  if (options.parameters.init == PLC_INIT_MASK) {
+    mask_ = read_volume_apart(options.init_file, options.nifti_frame);
+    print_warnings(mask_);
+  }
+  if (options.parameters.init == PLC_INIT_MESH) mesh_ = read_mesh(options.init_file);
+}
+
+plc_extras ExtractInputs::extras() const {
+  plc_extras e;
+  plc_extras_defaults(&e);
+  e.space = space_;
+  e.seeds = seeds_.data();
+  e.seed_count = static_cast<int64_t>(seeds_.size());
+  e.mask = mask_.bytes.empty() ? nullptr : &mask_.image;
+  e.mesh_xyz = mesh_.xyz.data();
+  e.mesh_vertex_count = static_cast<int64_t>(mesh_.xyz.size() / 3);
+  e.mesh_abc = mesh_.abc.data();
+  e.mesh_face_count = static_cast<int64_t>(mesh_.abc.size() / 3);
+  e.attachments = attach_.attachments.data();
+  e.attachment_count = static_cast<int64_t>(attach_.attachments.size());
+  e.pins = attach_.pins.data();
+  e.pin_count = static_cast<int64_t>(attach_.pins.size());
+  return e;
+}
+
+}  // namespace plc::tools

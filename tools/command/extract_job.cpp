@@ -1,0 +1,91 @@
+#include "tools/command/extract_job.h"
+
+#include <algorithm>
+#include <set>
+
+#include "tools/file/failure.h"
+
+namespace plc::tools {
+
+namespace {
+
+ExtractJob job_of(const ExtractOptions& options, const plc_parameters& parameters,
+                  const std::string& name) {
+  return {parameters, named(options.output, name), named(options.report, name),
+          named(options.trace, name), false};
+}
+
+template <typename T>
+int64_t object_voxels(const plc_image& image, double iso, bool inside_below) {
+  const T* v = static_cast<const T*>(image.voxels);
+  const int64_t n = image.dims[0] * image.dims[1] * image.dims[2];
+  return std::count_if(v, v + n, [&](T x) {
+    return inside_below ? static_cast<double>(x) <= iso : static_cast<double>(x) >= iso;
+  });
+}
+
+int64_t object_voxels(const plc_image& image, double iso, bool inside_below) {
+  switch (image.type) {
+    case PLC_U8:
+      return object_voxels<uint8_t>(image, iso, inside_below);
+    case PLC_I16:
+      return object_voxels<int16_t>(image, iso, inside_below);
+    case PLC_U16:
+      return object_voxels<uint16_t>(image, iso, inside_below);
+    case PLC_I32:
+      return object_voxels<int32_t>(image, iso, inside_below);
+    case PLC_F32:
+      return object_voxels<float>(image, iso, inside_below);
+  }
+  return 0;
+}
+
+void check_paths(const std::vector<ExtractJob>& jobs) {
+  std::set<std::string> seen;
+  for (const ExtractJob& job : jobs) {
+    for (const std::string& path : {job.output, job.report, job.trace}) {
+      if (!path.empty() && !seen.insert(path).second) {
+        throw Failure{path + ": would be written twice"};
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::string named(const std::string& path, const std::string& name) {
+  if (path.empty() || name.empty()) return path;
+  const size_t slash = path.find_last_of('/');
+  const size_t dot = path.find_last_of('.');
+  const bool has_suffix = dot != std::string::npos && (slash == std::string::npos || dot > slash);
+  const size_t end = has_suffix ? dot : path.size();
+  return path.substr(0, end) + "-" + name + path.substr(end);
+}
+
+std::vector<ExtractJob> jobs_of(const ExtractOptions& options) {
+  std::vector<ExtractJob> jobs;
+  if (!options.structures.empty()) {
+    for (const Structure& s : options.structures) {
+      jobs.push_back(job_of(options, s.parameters, s.name));
+    }
+  } else if (options.isos.size() > 1) {
+    for (const double iso : options.isos) {
+      plc_parameters parameters = options.parameters;
+      parameters.iso = iso;
+      jobs.push_back(job_of(options, parameters, text_of(iso)));
+      jobs.back().follows = jobs.size() > 1;
+    }
+  } else {
+    jobs.push_back(job_of(options, options.parameters, ""));
+  }
+  check_paths(jobs);
+  return jobs;
+}
+
+bool nearer(const plc_image& image, double from, double to, bool inside_below) {
+  const int64_t before = object_voxels(image, from, inside_below);
+  const int64_t after = object_voxels(image, to, inside_below);
+  return std::abs(before - after) < after;
+}
+
+}  // namespace plc::tools

@@ -1,0 +1,95 @@
+#include "tools/command/option_values.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+
+namespace plc::tools {
+
+namespace {
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == ',') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+std::string list_of(size_t count, const std::string& what) {
+  if (count == 0) return what + "s separated by commas";
+  return std::to_string(count) + " " + what + "s separated by commas";
+}
+
+template <typename T>
+bool parse(const std::string& text, T& value) {
+  const char* first = text.data();
+  const char* last = first + text.size();
+  if (first != last && *first == '+') ++first;
+  const auto [end, error] = std::from_chars(first, last, value);
+  return error == std::errc() && end == last;
+}
+
+template <typename T>
+std::vector<T> parse_list(const std::string& option, const std::string& text, size_t count,
+                          const std::string& what) {
+  std::vector<T> values;
+  for (const std::string& part : split(text)) {
+    T value{};
+    if (!parse(part, value) || !std::isfinite(static_cast<double>(value))) {
+      refuse_value(option, text, list_of(count, what));
+    }
+    values.push_back(value);
+  }
+  if (count != 0 && values.size() != count) refuse_value(option, text, list_of(count, what));
+  return values;
+}
+
+}  // namespace
+
+std::string text_of(double value) {
+  if (std::isnan(value)) return "";
+  char buffer[40];
+  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
+  return {buffer, result.ptr};
+}
+
+void demand_file_names(CLI::App& command) {
+  for (CLI::Option* option : command.get_options()) {
+    const std::string type = option->get_type_name();
+    if (!option->get_positional() && type != "FILE" && type != "OTHER") continue;
+    option->check([](const std::string& name) -> std::string {
+      return name.empty() ? "the name of a file is empty" : "";
+    });
+  }
+}
+
+void refuse_value(const std::string& option, const std::string& text, const std::string& expected) {
+  throw CLI::ValidationError(option, "'" + text + "' is not " + expected);
+}
+
+double to_number(const std::string& option, const std::string& text) {
+  double value = 0;
+  if (!parse(text, value) || !std::isfinite(value)) refuse_value(option, text, "a finite number");
+  return value;
+}
+
+int to_integer(const std::string& option, const std::string& text) {
+  int value = 0;
+  if (!parse(text, value)) refuse_value(option, text, "an integer");
+  return value;
+}
+
+std::vector<double> to_numbers(const std::string& option, const std::string& text, size_t count) {
+  return parse_list<double>(option, text, count, "number");
+}
+
+std::vector<int> to_integers(const std::string& option, const std::string& text, size_t count) {
+  return parse_list<int>(option, text, count, "integer");
+}
+
+}  // namespace plc::tools

@@ -1,0 +1,93 @@
+#include "tools/command/progress_line.h"
+
+#include <unistd.h>
+#include <algorithm>
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+namespace plc::tools {
+
+namespace {
+
+constexpr double kTerminalPeriod = 0.1;  // seconds
+constexpr double kLinePeriod = 2;
+constexpr double kSlicerPeriod = 0.1;
+// Before this much is done an estimate of the time left means nothing.
+constexpr double kFirstEstimate = 0.02;
+
+std::string left_of(const plc_progress& p) {
+  if (p.fraction < kFirstEstimate) return "";
+  const double left = p.seconds * (1 - p.fraction) / p.fraction;
+  char text[48];
+  if (left < 100) {
+    std::snprintf(text, sizeof text, ", about %.0f s left", std::max(1.0, std::ceil(left)));
+  } else {
+    std::snprintf(text, sizeof text, ", about %.0f min left", std::ceil(left / 60));
+  }
+  return text;
+}
+
+double period_of(Progress to, bool terminal) {
+  if (to == Progress::kSlicer) return kSlicerPeriod;
+  return terminal ? kTerminalPeriod : kLinePeriod;
+}
+
+std::string text_of(const plc_progress& p) {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "level %d (%d to 0), iteration %d, %" PRId64 " vertices, energy %.1e", p.level,
+                p.levels, p.iteration, p.vertices, p.energy);
+  return text;
+}
+
+// Slicer takes the last of each element that the output has so far.
+void tell_slicer(double fraction, const std::string& comment) {
+  if (!comment.empty()) std::printf("<filter-comment>%s</filter-comment>\n", comment.c_str());
+  std::printf("<filter-progress>%.4f</filter-progress>\n", fraction);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+ProgressLine::ProgressLine(Progress to)
+    : to_(to), terminal_(isatty(STDERR_FILENO) == 1), due_(period_of(to, terminal_)) {
+  if (to_ != Progress::kSlicer) return;
+  due_ = 0;  // the first iteration is told, however short the run
+  std::fputs("<filter-start><filter-name>Pellicle</filter-name></filter-start>\n", stdout);
+  tell_slicer(0, "");
+}
+
+ProgressLine::~ProgressLine() {
+  clear();
+}
+
+void ProgressLine::update(const plc_progress& p) {
+  if (to_ == Progress::kNone || p.seconds < due_) return;
+  due_ = p.seconds + period_of(to_, terminal_);
+  if (to_ == Progress::kSlicer) {
+    told_ = std::max(told_, p.fraction);
+    tell_slicer(told_, text_of(p));
+    return;
+  }
+  std::fprintf(stderr, terminal_ ? "\r\033[K%s%s" : "%s%s\n", text_of(p).c_str(),
+               left_of(p).c_str());
+  std::fflush(stderr);
+  written_ = true;
+}
+
+void ProgressLine::clear() {
+  if (terminal_ && written_) std::fputs("\r\033[K", stderr);
+  written_ = false;
+}
+
+void ProgressLine::done() {
+  clear();
+  if (to_ != Progress::kSlicer) return;
+  tell_slicer(1, "");
+  std::fputs("<filter-end><filter-name>Pellicle</filter-name></filter-end>\n", stdout);
+  std::fflush(stdout);
+}
+
+}  // namespace plc::tools
