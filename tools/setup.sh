@@ -2,6 +2,7 @@
 # Installs what is missing of the Debian packages that the named purposes need:
 #   tools/setup.sh [build] [test] [python] [demo] [lint] [compilers] [perf] [peers] [fuzz]
 #     [package] [coverage] [valgrind]
+# Without a purpose: build and test, as cmake builds the tests, too, unless told otherwise.
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
 
@@ -20,6 +21,7 @@ package=(dpkg-dev file)
 coverage=(gcovr jq)
 valgrind=(valgrind)
 
+[ $# -gt 0 ] || set -- build test
 wanted=()
 for purpose in "$@"; do
   case $purpose in
