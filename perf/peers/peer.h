@@ -17,7 +17,9 @@ namespace peer {
 struct Volume {
   std::array<int, 3> dims{};
   std::array<double, 3> spacing{};
-  std::vector<float> values;  // as in the file, x fastest
+  std::array<double, 3> origin{};     // LPS, mm: the centre of voxel (0,0,0)
+  std::array<double, 9> direction{};  // row-major, columns are the axes in LPS
+  std::vector<float> values;          // as in the file, x fastest
 };
 
 template <typename T>
@@ -34,8 +36,10 @@ inline Volume read(const std::string& path) {
   for (size_t a = 0; a < 3; ++a) {
     volume.dims[a] = static_cast<int>(loaded.image.dims[a]);
     volume.spacing[a] = loaded.image.spacing[a];
+    volume.origin[a] = loaded.image.origin[a];
     count *= static_cast<size_t>(loaded.image.dims[a]);
   }
+  std::copy_n(loaded.image.direction, 9, volume.direction.begin());
   volume.values.resize(count);
   switch (loaded.image.type) {
     case PLC_U8:
@@ -57,7 +61,8 @@ inline Volume read(const std::string& path) {
   return volume;
 }
 
-// `voxels` voxels of `value` more on every side: what the border cuts comes out closed.
+// `voxels` voxels of `value` more on every side: what the border cuts comes out closed. Voxel
+// (0,0,0) of the result lies outside of the volume; the origin stays that of the volume.
 inline Volume padded(const Volume& volume, int voxels, float value) {
   Volume out = volume;
   for (int& n : out.dims) n += 2 * voxels;
