@@ -523,6 +523,16 @@ PLC_API plc_status plc_surface_positions(plc_context* context, const plc_surface
  * space's origin. */
 PLC_API plc_status plc_surface_positions_f64(plc_context* context, const plc_surface* surface,
                                              plc_space space, double* xyz, int64_t capacity);
+/* Where the surface went round in circles and was frozen, so that its level could end: connected
+ * vertices that stay where they are, those of most vertices first. The surface is as valid there as
+ * anywhere, but is not where its forces would have it. A count of 0 for NULL. */
+PLC_API int64_t plc_surface_frozen_site_count(const plc_surface* surface);
+/* xyz: 3 * plc_surface_frozen_site_count doubles, the mean of each site's vertices; vertices: how
+ * many these are, may be NULL. capacity: sites there is room for; PLC_INVALID_ARGUMENT where there
+ * are more. */
+PLC_API plc_status plc_surface_frozen_sites(plc_context* context, const plc_surface* surface,
+                                            plc_space space, double* xyz, int64_t* vertices,
+                                            int64_t capacity);
 /* abc: 3 * face_count indices, counter-clockwise seen from outside in the given space. */
 PLC_API plc_status plc_surface_faces(plc_context* context, const plc_surface* surface,
                                      plc_space space, uint32_t* abc, int64_t capacity);
@@ -576,7 +586,7 @@ struct plc_level_report {
   double iso;      /* pi_I of this level, in the image's units */
   int64_t iterations;
   int64_t vertices; /* at the end of the level */
-  int converged;    /* 0: the iteration cap ended it */
+  int converged;    /* 0: max_iterations ended it before it came to rest */
   double energy;    /* at the end */
   double speed;     /* of the fastest vertex at the end, in delta per time */
   double seconds_topology, seconds_normals, seconds_dynamics, seconds_total;
@@ -586,6 +596,9 @@ struct plc_level_report {
   double late_volume;                  /* of all of them as they started, mm3 */
   int64_t moves;  /* of single vertices; those that sleep are left out, in blocks of 16 */
   int64_t checks; /* of single vertices' constraints after a movement (3.6, slow vertices) */
+  /* At the end: sites that would never have come to rest - noise, parts thinner than (3) allows -
+   * and were frozen, and their vertices. See plc_surface_frozen_sites. */
+  int64_t frozen_sites, frozen_vertices;
 };
 /* index: 0 .. plc_surface_level_count - 1, from coarse to fine. 0 levels for NULL. */
 PLC_API int plc_surface_level_count(const plc_surface* surface);

@@ -49,6 +49,10 @@ void rk4_stage(SimdTarget simd, int stage, const Rk4Coefficients& coefficients,
 // The longest squared displacement of the blocks (0 for none; NaN is passed over).
 float max_squared(SimdTarget simd, const ConstFloat3s& moved, const Blocks& blocks);
 
+// Of a vertex's turns: the number of them, and for how many the bound is halved.
+inline constexpr uint32_t kTurnsMask = 63;
+inline constexpr uint32_t kSlowingTurns = 5;
+
 // The speed bound of 3.6, where a step ends, and what is measured of it.
 struct MoveStreams {
   const Packed* position;  // before
@@ -56,10 +60,13 @@ struct MoveStreams {
   Float3s velocity;        // written
   ConstFloat3s normal;     // of the energy
   float* path;
+  const uint8_t* turns;
 };
 struct MoveBound {
   float length;  // of the displacement
   float speed;   // of the velocity
+  // Up to so many turns of a vertex. Each one more halves them; with kSlowingTurns more they are 0.
+  uint32_t free_turns;
 };
 struct Movement {
   double energy = 0;   // sum of (d . n)^2, in the order of lane_sum.h: the kinetic energy along the

@@ -207,11 +207,12 @@ kernels::SurfaceForces forces(Bench& b) {
           -0.8F,          bench::Image::kIso};
 }
 kernels::MoveStreams ends(Bench& b) {
-  return {b.start.data(), b.mesh.packed.data(), raw(b.mesh.velocity),
-          raw(std::as_const(b.mesh.normal)), b.mesh.path.data()};
+  return {b.start.data(),       b.mesh.packed.data(),
+          raw(b.mesh.velocity), raw(std::as_const(b.mesh.normal)),
+          b.mesh.path.data(),   b.mesh.turns.data()};
 }
 constexpr kernels::Rk4Coefficients kNewton{1, 0.5F, 1};
-constexpr kernels::MoveBound kBound{0.3F, 0.3F};
+constexpr kernels::MoveBound kBound{0.3F, 0.3F, 20};
 
 using Table = std::vector<std::pair<std::string, Kernel>>;
 

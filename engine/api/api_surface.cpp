@@ -9,6 +9,7 @@
 #include "engine/base/double3.h"
 #include "engine/measure/curvature.h"
 #include "engine/mesh/state_hash.h"
+#include "engine/recover/frozen_sites.h"
 #include "engine/transform/edge.h"
 #include "pyramid/memory.h"
 
@@ -210,6 +211,8 @@ plc_level_report level_report(const plc_surface& surface, size_t index) {
       r.late.volume * (surface.frame.to(PLC_SPACE_LPS).volume() / (s[0] * s[1] * s[2]));
   report.moves = r.operations.moves;
   report.checks = r.operations.checks;
+  report.frozen_sites = r.frozen_sites;
+  report.frozen_vertices = r.frozen_vertices;
   return report;
 }
 
@@ -249,6 +252,30 @@ plc_status plc_surface_positions_f64(plc_context* context, const plc_surface* su
   return plc::guarded(context, [&]() -> Status {
     if (Status s = plc::check_vertices(surface, space, "xyz", xyz, capacity); !s.ok()) return s;
     plc::write_positions(*surface, plc::affine_of(*surface, space), xyz);
+    return {};
+  });
+}
+
+int64_t plc_surface_frozen_site_count(const plc_surface* surface) {
+  return surface == nullptr || surface->records.empty() ? 0 : surface->records.back().frozen_sites;
+}
+
+plc_status plc_surface_frozen_sites(plc_context* context, const plc_surface* surface,
+                                    plc_space space, double* xyz, int64_t* vertices,
+                                    int64_t capacity) {
+  return plc::guarded(context, [&]() -> Status {
+    if (Status s = plc::check_surface(surface, space); !s.ok()) return s;
+    const auto sites = plc::frozen_sites(surface->mesh);
+    const auto count = static_cast<int64_t>(sites.size());
+    if (Status s = plc::check_room("xyz", xyz, capacity, count); !s.ok()) return s;
+    const plc::Affine a = plc::affine_of(*surface, space);
+    for (const plc::FrozenSite& site : sites) {
+      const plc::Vec3 p = site.place;
+      const auto at =
+          a.point({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+      xyz = std::copy(at.begin(), at.end(), xyz);
+      if (vertices != nullptr) *vertices++ = site.vertices;
+    }
     return {};
   });
 }

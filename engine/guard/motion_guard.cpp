@@ -5,6 +5,7 @@
 
 #include "engine/base/blocks.h"
 #include "engine/base/constants.h"
+#include "engine/mesh/turns.h"
 #include "kernels/ring_forces.h"
 #include "pyramid/memory.h"
 
@@ -61,6 +62,7 @@ int64_t MotionGuard::put_back(const uint32_t* face, const Buffer<Packed>& before
     mesh_.place(v, {b.x, b.y, b.z});
     hash.insert(v, mesh_.at(v));
     back.push_back(v);
+    mesh_.turns[v] = turned(mesh_.turns[v], 1);
     ++count;
   }
   return count;

@@ -55,6 +55,7 @@ struct Streams3 {
 //                         kWakeMove     neighbours
 //   risk           1      flags         motion guard: the surface is near or folded here (risk.h)
 //   operations     1      count         resolution, in this iteration
+//   turns          1      turns.h       sleep.h, transformations, motion guard
 //   cut            4+4    id, iteration annular: which cut made v, and when (exemption from (3))
 //   rings          48+2   id            transformations (kernels/ring.h)
 //
@@ -74,6 +75,7 @@ class Mesh {
   Buffer<uint8_t> calm, stir;
   Buffer<uint8_t> risk;
   Buffer<uint8_t> operations;
+  Buffer<uint8_t> turns;
   Buffer<uint32_t> cut_id;
   Buffer<uint32_t> cut_iteration;
 
@@ -205,6 +207,7 @@ void Mesh::visit_streams(A& a, B& b, const Visit& visit) {
   visit(a.stir, b.stir);
   visit(a.risk, b.risk);
   visit(a.operations, b.operations);
+  visit(a.turns, b.turns);
   visit(a.cut_id, b.cut_id);
   visit(a.cut_iteration, b.cut_iteration);
 }

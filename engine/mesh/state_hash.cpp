@@ -59,6 +59,7 @@ std::vector<PartHash> part_hashes(const Mesh& mesh) {
           part_hash("stir", mesh.stir),
           part_hash("risk", mesh.risk),
           part_hash("operations", mesh.operations),
+          part_hash("turns", mesh.turns),
           part_hash("cut id", mesh.cut_id),
           part_hash("cut iteration", mesh.cut_iteration)};
 }

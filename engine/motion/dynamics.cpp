@@ -320,13 +320,14 @@ kernels::SurfaceForces Dynamics::surface_forces(int stage, const Guide& guide) c
 
 // The last stage reads its positions from the other buffer.
 kernels::MoveStreams Dynamics::move_streams() {
-  return {mesh_.packed.data(), stage_[0].data(), raw(mesh_.velocity),
-          raw(std::as_const(mesh_.normal)), mesh_.path.data()};
+  return {mesh_.packed.data(), stage_[0].data(),
+          raw(mesh_.velocity), raw(std::as_const(mesh_.normal)),
+          mesh_.path.data(),   mesh_.turns.data()};
 }
 
 kernels::MoveBound Dynamics::move_bound() const {
   const float longest = model_.max_move * static_cast<float>(mesh_.delta);
-  return {longest, longest / time_step_};
+  return {longest, longest / time_step_, kFreeTurns};
 }
 
 void Dynamics::measure_rest_length(const Guide& guide) {

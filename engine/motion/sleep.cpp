@@ -8,12 +8,15 @@
 
 #include "engine/base/blocks.h"
 #include "engine/base/constants.h"
+#include "engine/mesh/turns.h"
 
 namespace plc {
 
 namespace {
 
 constexpr size_t kTaskCalm = 512;  // blocks
+constexpr int32_t kSideShift = 6;  // turns.h
+constexpr int32_t kBothSides = 3;
 
 bool all_calm(const Mesh& mesh, uint32_t block) {
   const uint8_t* calm = mesh.calm.data() + size_t{block} * kRingLanes;
@@ -30,22 +33,35 @@ struct Limits {
   float along;          // of calm vertices: less than this along the normal
   float slide_squared;  // ... and in all
   float steps;          // of stir, per mesh unit
+  float turn;           // more than this along the normal, to the other side, is a turn
 };
 
-// Brings calm and stir of a block's vertices up to date. Returns those that wake their neighbours,
-// as bits. Loops over whole blocks without branches, which compilers make vector code of.
+// Brings calm, stir and turns of a block's vertices up to date. Returns those that wake their
+// neighbours, as bits. Loops over whole blocks without branches, which compilers make vector code
+// of.
 uint32_t observe_block(Mesh& mesh, uint32_t first, const Limits& limits) {
   const Streams3 &move = mesh.displacement, &normal = mesh.normal;
   const float *dx = &move.x[first], *dy = &move.y[first], *dz = &move.z[first];
   const float *nx = &normal.x[first], *ny = &normal.y[first], *nz = &normal.z[first];
-  int32_t calm[kRingLanes], stir[kRingLanes];
+  int32_t calm[kRingLanes], stir[kRingLanes], side[kRingLanes];
   for (uint32_t k = 0; k < kRingLanes; ++k) {
-    const float along = std::abs(dx[k] * nx[k] + dy[k] * ny[k] + dz[k] * nz[k]);
+    const float outwards = dx[k] * nx[k] + dy[k] * ny[k] + dz[k] * nz[k];
+    const float along = std::abs(outwards);
+    side[k] = static_cast<int32_t>(outwards > limits.turn) +
+              2 * static_cast<int32_t>(outwards < -limits.turn);
     const float squared = dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k];
     calm[k] = static_cast<int32_t>(along < limits.along) &
               static_cast<int32_t>(squared < limits.slide_squared);
     // Whole steps only: what moves less than one in an iteration wakes nobody.
     stir[k] = static_cast<int32_t>(std::min(along * limits.steps, 256.0F));
+  }
+  uint8_t* const turns = &mesh.turns[first];
+  for (uint32_t k = 0; k < kRingLanes; ++k) {
+    const auto count = static_cast<int32_t>(turns_of(turns[k])), last = turns[k] >> kSideShift;
+    const int32_t turn = static_cast<int32_t>(side[k] + last == kBothSides);
+    const int32_t most = static_cast<int32_t>(kFrozenTurns);
+    turns[k] = static_cast<uint8_t>(std::min(count + turn, most) | (side[k] == 0 ? last : side[k])
+                                                                       << kSideShift);
   }
   uint8_t* const calm_for = &mesh.calm[first];
   uint8_t* const stirred = &mesh.stir[first];
@@ -72,7 +88,7 @@ void Sleep::choose(bool all) {
   calm_.resize(blocks);
   run_blocks(executor_, blocks, kTaskCalm, [&](size_t, size_t begin, size_t end) {
     for (size_t block = begin; block < end; ++block) {
-      calm_[block] = !all && calm_speed_ > 0 && all_calm(mesh_, static_cast<uint32_t>(block));
+      calm_[block] = !all && speeds_.calm > 0 && all_calm(mesh_, static_cast<uint32_t>(block));
     }
   });
   awake_.clear();
@@ -135,10 +151,10 @@ void Sleep::find_rim() {
 
 void Sleep::observe() {
   assert(calm_.size() == mesh_.padded() / kRingLanes);  // choose() came before
-  if (calm_speed_ == 0) return;
-  const float along = calm_speed_ * static_cast<float>(mesh_.delta);
+  const auto delta = static_cast<float>(mesh_.delta);
+  const float along = speeds_.calm * delta;
   const float slide = kCalmSlide * along;
-  const Limits limits{along, slide * slide, 256 / (kWakeMove * static_cast<float>(mesh_.delta))};
+  const Limits limits{along, slide * slide, 256 / (kWakeMove * delta), speeds_.turn * delta};
   found_.resize(std::max(found_.size(), block_count(awake_.size(), kTaskBlocks)));
   run_blocks(executor_, awake_.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {
     auto& wakers = found_[task];

@@ -9,6 +9,7 @@
 // woken: at the start of a level, and before a level may end. Nothing depends on threads.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "engine/base/state_io.h"
@@ -20,9 +21,13 @@ namespace plc {
 
 class Sleep {
  public:
-  // calm_speed: delta per iteration; 0: nothing ever sleeps.
-  Sleep(Mesh& mesh, const Executor& executor, float calm_speed)
-      : mesh_(mesh), executor_(executor), calm_speed_(calm_speed) {}
+  // Along the normal, delta per iteration.
+  struct Speeds {
+    float calm = 0;                                       // 0: nothing ever sleeps
+    float turn = std::numeric_limits<float>::infinity();  // slower movements are no turns (turns.h)
+  };
+  Sleep(Mesh& mesh, const Executor& executor, const Speeds& speeds)
+      : mesh_(mesh), executor_(executor), speeds_(speeds) {}
 
   // Chooses the blocks of the coming step. Those that fall asleep lose their velocities and
   // displacements. all: every block, whatever has been.
@@ -35,8 +40,8 @@ class Sleep {
   const Vector<uint32_t>& awake_and_rim() const { return awake_and_rim_; }
   // Whether some blocks were left out by the last choose().
   bool any_asleep() const { return any_asleep_; }
-  // After the step: who was calm, and who wakes its neighbours. Normals and displacements are those
-  // of the step.
+  // After the step: who was calm, who has turned, and who wakes its neighbours. Normals and
+  // displacements are those of the step.
   void observe();
   void wake_all();
   // Ids have changed: everything that sleeps counts as fallen asleep just now.
@@ -50,7 +55,7 @@ class Sleep {
 
   Mesh& mesh_;
   const Executor& executor_;
-  float calm_speed_;
+  Speeds speeds_;
   bool any_asleep_ = false;
   Vector<uint32_t> awake_, fallen_, awake_and_rim_;
   Vector<uint8_t> asleep_, calm_, touched_;  // by block

@@ -22,7 +22,7 @@ Evolution::Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, cons
       schedule_(schedule),
       simd_(simd),
       slow_vertices_(options.slow_vertices),
-      sleep_(mesh, schedule, options.calm_speed),
+      sleep_(mesh, schedule, options.speeds),
       dynamics_(mesh, schedule, simd, model),
       guard_(mesh, schedule, simd),
       resolution_(mesh, schedule, simd) {}

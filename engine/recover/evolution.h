@@ -13,7 +13,7 @@ namespace plc {
 
 // Beyond the model of the paper.
 struct EvolutionOptions {
-  float calm_speed = 0;       // of sleep.h, delta per iteration; 0: nothing sleeps
+  Sleep::Speeds speeds{};
   bool slow_vertices = true;  // 3.6; false: every vertex is checked in every iteration
 };
 

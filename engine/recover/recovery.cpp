@@ -7,6 +7,7 @@
 #include "engine/base/constants.h"
 #include "engine/mesh/face_rings.h"
 #include "engine/recover/cost.h"
+#include "engine/recover/frozen_sites.h"
 #include "engine/resolve/refinement.h"
 #include "pyramid/gradient.h"
 
@@ -19,7 +20,8 @@ EvolutionOptions evolution_options(const RecoverySpec& spec) {
   // The speed along the normal that every vertex would have at the energy epsilon.
   const double speed = std::sqrt(2 * spec.epsilon / static_cast<double>(spec.model.mass)) *
                        static_cast<double>(stable_time_step(spec.model));
-  if (spec.sleeping) options.calm_speed = static_cast<float>(kCalmSpeed * speed);
+  if (spec.sleeping) options.speeds.calm = static_cast<float>(kCalmSpeed * speed);
+  options.speeds.turn = static_cast<float>(kTurnSpeed * speed);
   options.slow_vertices = spec.slow_vertices;
   return options;
 }
@@ -180,7 +182,10 @@ Status Recovery::adapt() {
     ++record().operations.refinement;
   }
   mesh_.delta = target;
-  for (uint32_t v = 0; v < mesh_.slots(); ++v) mesh_.wake(v);
+  for (uint32_t v = 0; v < mesh_.slots(); ++v) {
+    mesh_.wake(v);
+    mesh_.turns[v] = 0;
+  }
   evolution_.restart();
   evolution_.passed("refinement");
   record().delta = target;
@@ -241,9 +246,17 @@ Status Recovery::told() const {
   return {};
 }
 
+void Recovery::count_frozen() {
+  const auto sites = frozen_sites(mesh_);
+  record().frozen_sites = static_cast<int64_t>(sites.size());
+  record().frozen_vertices = 0;
+  for (const FrozenSite& site : sites) record().frozen_vertices += site.vertices;
+}
+
 void Recovery::check() {
   evolution_.check_all(record().seconds, record().operations);
   record().vertices = mesh_.vertex_count();
+  count_frozen();
   // The search for faces that meet takes twice as long where a twentieth of the ids lie anywhere.
   renumber();
   evolution_.restart();

@@ -54,7 +54,8 @@ struct LevelRecord {
   double energy = 0, speed = 0;  // of the last iteration; speed of the fastest, delta per time
   Seconds seconds;
   OperationCounts operations;
-  LateBubbles late;  // volume in mm3
+  LateBubbles late;                               // volume in mm3
+  int64_t frozen_sites = 0, frozen_vertices = 0;  // at the end (frozen_sites.h)
 };
 
 // What the user says of a level that has come to its end.
@@ -141,6 +142,7 @@ class Recovery {
   void start_round(int number, bool late);
   int iterations_left() const;  // of the round
   Status iterate();
+  void count_frozen();
   void check();
   Status verify();
   Status end_round();

@@ -30,6 +30,8 @@ void visit_record(Record& r, const Visit& visit) {
   visit(r.late.bubbles);
   visit(r.late.cavities);
   visit(r.late.volume);
+  visit(r.frozen_sites);
+  visit(r.frozen_vertices);
 }
 
 template <typename Round, typename Visit>

@@ -99,6 +99,8 @@ void settle(Mesh& mesh, const Executor& executor, Resolution& resolution, Operat
   resolution.restart();
   for (int pass = 0; pass < kConformPasses; ++pass) {
     const int64_t before = applied(counts);
+    // What passes end here is that they change nothing any more.
+    std::fill(mesh.turns.begin(), mesh.turns.end(), uint8_t{0});
     resolution.take_all();
     resolution.run(kIteration, counts);
     if (applied(counts) == before) break;
@@ -113,6 +115,7 @@ void put_at_rest(Mesh& mesh, const Executor& executor) {
     mesh.risk[v] = Mesh::kNearRisk;
     mesh.path[v] = 0;
     mesh.operations[v] = 0;
+    mesh.turns[v] = 0;
     mesh.cut_id[v] = 0;
   }
 }

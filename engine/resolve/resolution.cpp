@@ -302,6 +302,11 @@ void Resolution::apply_in_turn(const Candidate& candidate, size_t trial, Vector<
     ++counts.deferred;
     return;
   }
+  if (goes_in_circles(mesh_, candidate)) {
+    freeze(mesh_, candidate);
+    ++counts.refused;
+    return;
+  }
   if (fits_neighbors(mesh_, candidate)) {
     trials_.begin(footprint_);
     if (apply(candidate, trial, counts)) {

@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "engine/mesh/turns.h"
+
 namespace plc {
 
 namespace {
@@ -51,6 +53,8 @@ std::array<uint32_t, 3> cut_cycle(Mesh& mesh, const Cycle& cycle,
     const uint32_t v = cycle.corner[i];
     right[i] = mesh.create(copies[i + 3].place, mesh.velocity.at(v));
     mesh.operations[right[i]] = mesh.operations[v];
+    mesh.turns[v] = turned(mesh.turns[v], kTransformationTurns);
+    mesh.turns[right[i]] = with_turns(0, turns_of(mesh.turns[v]));
   }
   for (uint32_t i = 0; i < 3; ++i) {
     const uint32_t v = cycle.corner[i];

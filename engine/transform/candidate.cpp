@@ -2,7 +2,35 @@
 
 #include <algorithm>
 
+#include "engine/mesh/turns.h"
+
 namespace plc {
+
+namespace {
+
+// visit(v) for the vertices that a topological transformation takes apart.
+template <typename Visit>
+void visit_corners(const Candidate& candidate, const Visit& visit) {
+  visit(candidate.edge.u);
+  visit(candidate.edge.v);
+  if (candidate.operation == Operation::kAnnular) visit(candidate.edge.a);
+}
+
+}  // namespace
+
+bool goes_in_circles(const Mesh& mesh, const Candidate& candidate) {
+  if (candidate.operation != Operation::kAnnular && candidate.operation != Operation::kAxial) {
+    return false;
+  }
+  uint32_t turns = 0;
+  visit_corners(candidate, [&](uint32_t v) { turns = std::max(turns, turns_of(mesh.turns[v])); });
+  return turns >= (candidate.operation == Operation::kAnnular ? kFreeTurns : kFrozenTurns);
+}
+
+void freeze(Mesh& mesh, const Candidate& candidate) {
+  visit_corners(candidate,
+                [&](uint32_t v) { mesh.turns[v] = with_turns(mesh.turns[v], kFrozenTurns); });
+}
 
 bool fits_neighbors(const Mesh& mesh, const Candidate& candidate) {
   const Edge& e = candidate.edge;

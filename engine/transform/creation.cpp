@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "engine/mesh/turns.h"
+
 namespace plc {
 
 uint32_t create_on_edge(Mesh& mesh, const Edge& e) {
@@ -11,6 +13,7 @@ uint32_t create_on_edge(Mesh& mesh, const Edge& e) {
   const auto count = std::max(mesh.operations[e.u], mesh.operations[e.v]);
   const uint32_t w = mesh.create(midpoint(mesh.at(e.u), mesh.at(e.v)), speed);
   mesh.operations[w] = count;
+  mesh.turns[w] = turns_between(mesh.turns[e.u], mesh.turns[e.v]);
   Neighbors ring;
   for (const uint32_t x : {e.u, e.a, e.v, e.b}) ring.push_back(x);
   mesh.set_ring(w, ring);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "engine/mesh/turns.h"
+
 namespace plc {
 
 Neighbors common_neighbors(const Mesh& mesh, uint32_t u, uint32_t v) {
@@ -44,6 +46,8 @@ void delete_edge(Mesh& mesh, const Edge& e, Vec3 place) {
   }
   mesh.velocity.set(e.u, midpoint(mesh.velocity.at(e.u), mesh.velocity.at(e.v)));
   mesh.operations[e.u] = std::max(mesh.operations[e.u], mesh.operations[e.v]);
+  mesh.turns[e.u] =
+      with_turns(mesh.turns[e.u], std::max(turns_of(mesh.turns[e.u]), turns_of(mesh.turns[e.v])));
   mesh.place(e.u, place);
   mesh.set_ring(e.u, ring);
   mesh.destroy(e.v);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numeric>
 
 #include "tests/samples/sample_api.h"
 
@@ -183,6 +184,51 @@ TEST_CASE("small voxels far away are told in doubles, where floats of them meet"
   CHECK(plc_surface_positions_f64(context.get(), nullptr, PLC_SPACE_LPS, &none, 1) ==
         PLC_INVALID_ARGUMENT);
   CHECK(none == 7);
+}
+
+TEST_CASE("where a surface was frozen is told, in every space", "[pellicle]") {
+  const Context context = samples::make_context();
+  samples::Volume volume = samples::noise(samples::empty_volume({26, 26, 26}), 3, 1);
+  samples::add_noise(volume, 0.1, 2);
+  const plc_image image = samples::image_of(volume);
+  const Surface noisy = samples::extract(context.get(), image, samples::parameters(0.5, 0));
+  const int64_t count = plc_surface_frozen_site_count(noisy.get());
+  REQUIRE(count > 0);
+  const auto places = [&](plc_space space, std::vector<int64_t>& vertices) {
+    std::vector<double> xyz(3 * static_cast<size_t>(count));
+    vertices.resize(static_cast<size_t>(count));
+    REQUIRE(plc_surface_frozen_sites(context.get(), noisy.get(), space, xyz.data(), vertices.data(),
+                                     count) == PLC_OK);
+    return xyz;
+  };
+  std::vector<int64_t> vertices, again;
+  const auto voxels = places(PLC_SPACE_VOXEL, vertices), lps = places(PLC_SPACE_LPS, again);
+  CHECK(vertices == again);
+  CHECK(std::is_sorted(vertices.rbegin(), vertices.rend()));
+  const plc_level_report level = samples::level_of(noisy.get(), 0);
+  CHECK(level.frozen_sites == count);
+  CHECK(level.frozen_vertices == std::accumulate(vertices.begin(), vertices.end(), int64_t{0}));
+  for (size_t i = 0; i < voxels.size(); i += 3) {
+    const double voxel[3] = {voxels[i], voxels[i + 1], voxels[i + 2]};
+    const auto expected = placed(image, PLC_SPACE_LPS, voxel);
+    for (size_t a = 0; a < 3; ++a) {
+      CHECK(voxel[a] > -1.5);
+      CHECK(voxel[a] < 26.5);
+      CHECK(lps[i + a] == Approx(expected[a]).margin(1e-4));
+    }
+  }
+  double none = 7;
+  CHECK(plc_surface_frozen_sites(context.get(), noisy.get(), PLC_SPACE_LPS, &none, nullptr, 0) ==
+        PLC_INVALID_ARGUMENT);
+  CHECK(plc_surface_frozen_sites(context.get(), nullptr, PLC_SPACE_LPS, &none, nullptr, 1) ==
+        PLC_INVALID_ARGUMENT);
+  CHECK(none == 7);
+  CHECK(plc_surface_frozen_site_count(nullptr) == 0);
+  const Surface clean =
+      samples::extract(context.get(), framed(kFrames[0]), samples::parameters(0.5, 0));
+  CHECK(plc_surface_frozen_site_count(clean.get()) == 0);
+  CHECK(plc_surface_frozen_sites(context.get(), clean.get(), PLC_SPACE_LPS, nullptr, nullptr, 0) ==
+        PLC_OK);
 }
 
 TEST_CASE("the frame changes nothing but the places: the hash is of mesh space", "[pellicle]") {

@@ -54,6 +54,7 @@ constexpr uint64_t kCasesHash = 0xdd7b64590c09fdcf;
 struct Leftovers {
   int64_t edges = 0;
   int64_t violated = 0;
+  int64_t frozen = 0;      // ... that have been asked for too often (turns.h)
   int64_t resolvable = 0;  // ... whose transformation exists and would be admitted
   std::string first;       // of those
 };
@@ -97,6 +98,10 @@ Leftovers leftovers(const Mesh& mesh) {
     const auto candidate = plc::edge_candidate(mesh, u, k);
     if (!candidate) return;
     ++found.violated;
+    if (plc::goes_in_circles(mesh, *candidate)) {
+      ++found.frozen;
+      return;
+    }
     if (!admitted(mesh, hash, *candidate)) return;
     ++found.resolvable;
     if (!found.first.empty()) return;
@@ -180,6 +185,7 @@ void run_to(const Run& run, const plc::Pyramid& whole, size_t finest, Outcome& o
   const Leftovers left = leftovers(mesh);
   out.left.edges += left.edges;
   out.left.violated += left.violated;
+  out.left.frozen += left.frozen;
   out.left.resolvable += left.resolvable;
   if (out.left.first.empty()) out.left.first = left.first;
   if (const std::string wrong = invalid(mesh); !wrong.empty()) fail(wrong);
@@ -220,12 +226,12 @@ Outcome run_seed(uint64_t seed, std::string& name) {
 void print(const Outcome& o, const std::string& name) {
   const plc::OperationCounts& n = o.operations;
   std::cout << name << "\n  " << o.seconds << " s, " << o.iterations << " iterations, "
-            << o.vertices << " vertices, violated " << o.left.violated << ", resolvable "
-            << o.left.resolvable << ", meeting " << o.meeting << ", deferred " << n.deferred
-            << ", refused " << n.refused << ", reverted " << n.reverted << ", annular " << n.annular
-            << ", axial " << n.axial << ", tetrahedra " << n.tetrahedron
-            << (o.finished ? "" : ", LOST") << (o.failure.empty() ? "" : ", FAILED ") << o.failure
-            << std::endl;
+            << o.vertices << " vertices, violated " << o.left.violated << ", frozen "
+            << o.left.frozen << ", resolvable " << o.left.resolvable << ", meeting " << o.meeting
+            << ", deferred " << n.deferred << ", refused " << n.refused << ", reverted "
+            << n.reverted << ", annular " << n.annular << ", axial " << n.axial << ", tetrahedra "
+            << n.tetrahedron << (o.finished ? "" : ", LOST")
+            << (o.failure.empty() ? "" : ", FAILED ") << o.failure << std::endl;
 }
 
 // body(0) .. body(count - 1) on as many threads as there are cores.
@@ -294,6 +300,7 @@ TEST_CASE("random evolutions stay closed, oriented and embedded in every iterati
     sum.levels += o.levels;
     sum.left.edges += o.left.edges;
     sum.left.violated += o.left.violated;
+    sum.left.frozen += o.left.frozen;
   }
   std::cout << seeds.size() << " evolutions, " << finished << " of them down to I_0, " << sum.levels
             << " ends of levels, " << sum.iterations

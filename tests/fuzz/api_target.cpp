@@ -280,6 +280,11 @@ class Caller {
          positions);
     left(plc_surface_positions_f64(context(), surface, space, maybe(2, exact.data()), vertices),
          exact);
+    const int64_t sites = plc_surface_frozen_site_count(surface) + input_.below(3) - 1;
+    Room<double> places(3 * sites);
+    left(plc_surface_frozen_sites(context(), surface, space, maybe(2, places.data()), nullptr,
+                                  sites),
+         places);
     left(plc_surface_normals(context(), surface, space, maybe(2, normals.data()), vertices),
          normals);
     left(plc_surface_scalars(context(), surface, space, scalar, maybe(2, scalars.data()), vertices),

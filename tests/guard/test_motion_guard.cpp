@@ -94,6 +94,7 @@ TEST_CASE("parts that have gone into each other go back and lose their speed", "
     if (!movement.is_back(v)) continue;
     ++counted;
     CHECK(plc::length(mesh.velocity.at(v)) == 0);
+    CHECK(mesh.turns[v] == 1);
     // The table has it where it is now.
     bool found = false;
     movement.hash().visit_box(mesh, mesh.at(v), mesh.at(v),

@@ -135,6 +135,7 @@ struct Step {
   std::vector<float> image = random_floats(size_t{60} * 50 * 40, 0, 1, 14);
   std::vector<Packed> laplacian{n}, stage{n}, moved_to{n};
   std::vector<float> path = random_floats(n, 0, 1, 38);
+  std::vector<uint8_t> turns = std::vector<uint8_t>(n, 0);
   kernels::Rk4Streams streams{rings.position.data(), velocity.in(), speed.out(),
                               moved.out(),           rate.out(),    stage.data()};
   kernels::SurfaceForces forces{rings.view(),
@@ -146,9 +147,9 @@ struct Step {
                                 -1.2F,
                                 0.4F};
   kernels::Rk4Coefficients newton{1.3F, 0.45F, 0.7F};
-  kernels::MoveBound bound{0.8F, 1.1F};
-  kernels::MoveStreams ends{rings.position.data(), moved_to.data(), velocity.out(), normal.in(),
-                            path.data()};
+  kernels::MoveBound bound{0.8F, 1.1F, 20};
+  kernels::MoveStreams ends{rings.position.data(), moved_to.data(), velocity.out(),
+                            normal.in(),           path.data(),     turns.data()};
 
   Step() {
     laplacian.resize(n), stage.resize(n), moved_to.resize(n);

@@ -20,7 +20,7 @@ namespace kernels = plc::kernels;
 namespace scalar = plc::kernels::scalar;
 
 constexpr kernels::Rk4Coefficients kNewton{1.0F / 0.7F, 0.45F, 0.9F};
-constexpr kernels::MoveBound kBound{2.5F, 3.5F};
+constexpr kernels::MoveBound kBound{2.5F, 3.5F, 20};
 constexpr uint32_t kBlocks = 240;  // more than kernels fetch ahead
 
 // A stage of a step in full swing.
@@ -29,9 +29,11 @@ struct Stage {
   std::vector<float> image = random_floats(size_t{60} * 50 * 40, 0, 1, 32);
   std::vector<Packed> laplacian, next, moved_to;
   std::vector<float> streams[21], path;
+  std::vector<uint8_t> turns;
   kernels::Movement movement;
 
   Stage() : laplacian(rings.count()), next(laplacian), moved_to(laplacian), path(rings.count()) {
+    for (uint32_t v = 0; v < rings.count(); ++v) turns.push_back(static_cast<uint8_t>(37 * v));
     for (uint32_t i = 0; i < 21; ++i) streams[i] = random_floats(rings.count(), -3, 3, 40 + i);
     scalar::laplacian(rings.view(), rings.position.data(), all(), laplacian.data());
   }
@@ -56,7 +58,7 @@ struct Stage {
             0.4F};
   }
   kernels::MoveStreams ends() {
-    return {rings.position.data(), moved_to.data(), three(0), fixed(15), path.data()};
+    return {rings.position.data(), moved_to.data(), three(0), fixed(15), path.data(), turns.data()};
   }
   std::vector<float> result() const {
     std::vector<float> values = flatten(next);

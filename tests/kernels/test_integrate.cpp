@@ -160,21 +160,23 @@ struct Mover {
   Particles all;
   std::vector<Packed> moved_to;
   std::vector<float> path;
+  std::vector<uint8_t> turns;  // of all numbers, and sides
   Movement movement;
 
   explicit Mover(uint32_t count) : all(count, 40), moved_to(count, Packed{7, 7, 7, 7}) {
     path = random_floats(count, 0, 4, 61);
+    for (uint32_t v = 0; v < count; ++v) turns.push_back(static_cast<uint8_t>(37 * v));
     for (auto& axis : all.d) axis[20] = 0.0F;
   }
   template <typename Move>
   void run(const Move& move, const MoveBound& bound, const Blocks& blocks) {
-    const MoveStreams ends{all.start.data(), moved_to.data(), Particles::three(all.v),
-                           Particles::fixed(all.f), path.data()};
+    const MoveStreams ends{all.start.data(),        moved_to.data(), Particles::three(all.v),
+                           Particles::fixed(all.f), path.data(),     turns.data()};
     movement = move(bound, Particles::three(all.d), Particles::fixed(all.a), ends, blocks);
   }
 };
 
-constexpr MoveBound kBound{1.5F, 2.5F};
+constexpr MoveBound kBound{1.5F, 2.5F, 20};
 
 }  // namespace
 
@@ -196,8 +198,10 @@ TEST_CASE("the move has the bits of its scalar twin, on the listed blocks only",
   }
 }
 
-TEST_CASE("movements longer than the bound are shortened, the others keep their bits",
-          "[kernels]") {
+TEST_CASE(
+    "movements longer than the bound are shortened, the others keep their bits; each turn "
+    "beyond the free ones halves it",
+    "[kernels]") {
   const Mover before(80);
   Mover after(80);
   after.run(scalar::move, kBound, Blocks::range(0, 80));
@@ -205,7 +209,11 @@ TEST_CASE("movements longer than the bound are shortened, the others keep their 
   for (uint32_t i = 0; i < 80; ++i) {
     CAPTURE(i);
     const auto check = [&](const std::vector<float>(&own)[3], const std::vector<float>(&old)[3],
-                           float bound) {
+                           float free_bound) {
+      const uint32_t turns = after.turns[i] & kernels::kTurnsMask;
+      const uint32_t beyond = turns > 20 ? turns - 20 : 0;
+      const float bound =
+          beyond < kernels::kSlowingTurns ? std::ldexp(free_bound, -static_cast<int>(beyond)) : 0;
       const double length = std::hypot(double{own[0][i]}, double{own[1][i]}, double{own[2][i]});
       const double was = std::hypot(double{old[0][i]}, double{old[1][i]}, double{old[2][i]});
       if (was <= double{bound}) {
@@ -213,7 +221,7 @@ TEST_CASE("movements longer than the bound are shortened, the others keep their 
         return;
       }
       ++shortened;
-      REQUIRE(length == Approx(double{bound}).epsilon(1e-6));
+      REQUIRE(length == Approx(double{bound}).epsilon(1e-6).margin(1e-9));
       for (int a = 0; a < 3; ++a) {
         REQUIRE(double{own[a][i]} * was == Approx(double{old[a][i]} * length).margin(1e-5));
       }
@@ -228,7 +236,8 @@ TEST_CASE("moving adds the displacement, lengthens the path and measures the mov
           "[kernels]") {
   const Mover before(4096);
   Mover after(4096);
-  after.run(scalar::move, {100, 100}, Blocks::range(32, 4080));
+  after.turns.assign(4096, 20);
+  after.run(scalar::move, {100, 100, 20}, Blocks::range(32, 4080));
   double energy = 0, longest = 0;
   for (uint32_t i = 32; i < 4080; ++i) {
     const auto& d = before.all.d;

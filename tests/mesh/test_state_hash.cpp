@@ -122,6 +122,7 @@ TEST_CASE("a change of one stream changes the hash of its part and of no other",
   CHECK(changed([](Mesh& m) { m.stir[7] ^= 1U; }) == "stir;");
   CHECK(changed([](Mesh& m) { m.risk[7] ^= 1U; }) == "risk;");
   CHECK(changed([](Mesh& m) { m.operations[7] ^= 1U; }) == "operations;");
+  CHECK(changed([](Mesh& m) { m.turns[7] ^= 1U; }) == "turns;");
   CHECK(changed([](Mesh& m) { m.cut_id[7] ^= 1U; }) == "cut id;");
   CHECK(changed([](Mesh& m) { m.cut_iteration[7] ^= 1U; }) == "cut iteration;");
 }

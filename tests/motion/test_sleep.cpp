@@ -50,7 +50,7 @@ TEST_CASE("what has been calm for long falls asleep and loses its speed", "[slee
   Mesh mesh;
   fill_sphere(mesh);
   mesh.velocity.set(7, {1, 2, 3});
-  plc::Sleep sleep(mesh, samples::kSerial, kSpeed);
+  plc::Sleep sleep(mesh, samples::kSerial, {kSpeed});
   rest(mesh, sleep, plc::kCalmPeriod - 1);
   CHECK_FALSE(sleep.any_asleep());
   CHECK(mesh.velocity.x[7] == 1);
@@ -68,10 +68,10 @@ TEST_CASE("what has been calm for long falls asleep and loses its speed", "[slee
 TEST_CASE("without a calm speed, or when all are asked for, nothing sleeps", "[sleep]") {
   Mesh mesh;
   fill_sphere(mesh);
-  plc::Sleep never(mesh, samples::kSerial, 0);
+  plc::Sleep never(mesh, samples::kSerial, {});
   rest(mesh, never, 20);
   CHECK_FALSE(never.any_asleep());
-  plc::Sleep sleep(mesh, samples::kSerial, kSpeed);
+  plc::Sleep sleep(mesh, samples::kSerial, {kSpeed});
   rest(mesh, sleep, 20);
   CHECK(sleep.awake().empty());
   sleep.choose(true);
@@ -81,7 +81,7 @@ TEST_CASE("without a calm speed, or when all are asked for, nothing sleeps", "[s
 TEST_CASE("a vertex that is touched wakes its block", "[sleep]") {
   Mesh mesh;
   fill_sphere(mesh);
-  plc::Sleep sleep(mesh, samples::kSerial, kSpeed);
+  plc::Sleep sleep(mesh, samples::kSerial, {kSpeed});
   rest(mesh, sleep, plc::kCalmPeriod);
   mesh.place(100, mesh.at(100));
   mesh.wake(500);
@@ -96,7 +96,7 @@ TEST_CASE("a vertex that moves along its normal wakes its neighbours, one that s
           "[sleep]") {
   Mesh mesh;
   fill_sphere(mesh);
-  plc::Sleep sleep(mesh, samples::kSerial, kSpeed);
+  plc::Sleep sleep(mesh, samples::kSerial, {kSpeed});
   const auto delta = static_cast<float>(mesh.delta);
   for (const bool slides : {false, true}) {
     sleep.wake_all();
@@ -126,7 +126,7 @@ TEST_CASE("a vertex that moves along its normal wakes its neighbours, one that s
 TEST_CASE("the rim is what sleeps next to what is awake", "[sleep]") {
   Mesh mesh;
   fill_sphere(mesh);
-  plc::Sleep sleep(mesh, samples::kSerial, kSpeed);
+  plc::Sleep sleep(mesh, samples::kSerial, {kSpeed});
   sleep.choose(false);
   CHECK(sleep.awake_and_rim() == sleep.awake());
   rest(mesh, sleep, plc::kCalmPeriod);
@@ -147,7 +147,7 @@ TEST_CASE("the rim is what sleeps next to what is awake", "[sleep]") {
 TEST_CASE("vertices that were created since are not taken for sleepers", "[sleep]") {
   Mesh mesh;
   fill_sphere(mesh);
-  plc::Sleep sleep(mesh, samples::kSerial, 0);
+  plc::Sleep sleep(mesh, samples::kSerial, {});
   sleep.choose(false);
   CHECK_FALSE(sleep.any_asleep());
   mesh.reserve(mesh.slots() + 64);
@@ -166,7 +166,7 @@ TEST_CASE("who is awake does not depend on the executor", "[sleep]") {
     const fixtures::ThreadExecutor threads(3);
     const plc::Executor& executor =
         mesh == &one ? static_cast<const plc::Executor&>(samples::kSerial) : threads;
-    plc::Sleep sleep(*mesh, executor, kSpeed);
+    plc::Sleep sleep(*mesh, executor, {kSpeed});
     samples::Random random(3);
     for (int i = 0; i < 20; ++i) {
       sleep.choose(false);

@@ -329,6 +329,17 @@ def test_the_command_makes_the_same_surface(tmp_path):
     assert f"{surface.hash:016x}" in json.dumps(report)
 
 
+def test_frozen_sites_lie_where_the_surface_is():
+    rng = np.random.default_rng(3)
+    image = rng.uniform(0, 1, (24, 24, 24)).astype(np.float32)
+    surface = pellicle.extract(image, 0.5, levels=0)
+    places, vertices = surface.frozen_sites
+    assert places.dtype == np.float64 and places.shape == (len(vertices), 3)
+    assert len(vertices) == surface.levels[-1].frozen_sites > 0
+    assert vertices.sum() == surface.levels[-1].frozen_vertices
+    assert (places > -3).all() and (places < 27).all()
+
+
 def test_small_voxels_far_away_are_told_in_float64(pill_surface):
     near = pill_surface
     far = pellicle.extract(pill(), 100, spacing=(1e-6,) * 3, origin=(1e5, 0, 0))

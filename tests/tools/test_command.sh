@@ -241,6 +241,13 @@ says "report" '"hash": "[0-9a-f]{16}"' out/r.json
 works "--level-iso" 0 "$pellicle" extract ball.nrrd --iso 0.5 --window 0,1 --levels 1 --level-iso 0.45,0.5 \
   -o out/r.ply --report out/r.json
 tr -d ' \n' <out/r.json | grep -q '"level_iso":\[0.45,0.5\]' || fails "--level-iso: the report has another order"
+says "report without frozen sites" '"sites": \[\]' out/r.json
+works "--max-iterations" 0 "$pellicle" extract ball.nrrd --iso 0.5 --levels 0 --max-iterations 3 --quiet -o out/r.ply
+says "an end by the most iterations" "^pellicle: level 0 did not come to rest within --max-iterations 3$" stderr
+works "phantom" 0 "$pellicle" phantom sierpinski -o sites.nrrd --size 27
+works "frozen sites" 0 "$pellicle" extract sites.nrrd --iso 128 -o out/r.ply --report out/r.json
+says "frozen sites" "^level 0 .*, [0-9]+ sites of [0-9]+ vertices frozen$" stdout
+says "report of frozen sites" '"place":' out/r.json
 works "--each-level" 0 "$pellicle" extract ball.nrrd --iso 0.5 --levels 1 --each-level --quiet -o out/l.ply
 for file in out/l-level1.ply out/l-level0.ply; do works "check of $file" 0 "$pellicle" check $file; done
 cmp -s out/l.ply out/l-level0.ply || fails "--each-level: the last level's surface is not the result"

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "engine/base/constants.h"
+#include "engine/mesh/turns.h"
 #include "engine/transform/deletion.h"
 #include "tests/samples/sample_surfaces.h"
 #include "tests/samples/sample_volumes.h"
@@ -146,6 +147,8 @@ TEST_CASE("intermediary vertices lie on the edges at the given reach and take ov
   mesh.velocity.set(u, {4, 0, 0});
   mesh.operations[u] = 5;
   mesh.operations[v] = 6;
+  mesh.turns[u] = 0x80 + 4;
+  mesh.turns[v] = plc::kFrozenTurns;
   const AxialPlan plan = plc::plan_axial(mesh, u, v);
   REQUIRE(plan.p.size() == mesh.valence(u));
   REQUIRE(plan.q.size() == mesh.valence(v));
@@ -161,6 +164,7 @@ TEST_CASE("intermediary vertices lie on the edges at the given reach and take ov
     CHECK(plc::squared_distance(mesh.at(created[i]), place) == 0);
     CHECK(mesh.velocity.at(created[i]).x == (of_u ? 4 * (1 - plc::kAxialReach) : 0));
     CHECK(mesh.operations[created[i]] == (of_u ? 5 : 6));
+    CHECK(mesh.turns[created[i]] == (of_u ? 4 + plc::kTransformationTurns : plc::kFrozenTurns));
     CHECK(mesh.valence(created[i]) >= 5);
   }
 }

@@ -47,6 +47,8 @@ TEST_CASE("the new vertex lies between the ends and the apexes, which alone chan
   mesh.velocity.set(e.v, {0, 6, 0});
   mesh.operations[u] = 3;
   mesh.operations[e.v] = 8;
+  mesh.turns[u] = 0x80 + 4;
+  mesh.turns[e.v] = 0x40 + 7;
   plc::Vector<uint32_t> valences;
   for (uint32_t v = 0; v < mesh.slots(); ++v) valences.push_back(mesh.valence(v));
   const uint32_t w = plc::create_on_edge(mesh, e);
@@ -59,6 +61,7 @@ TEST_CASE("the new vertex lies between the ends and the apexes, which alone chan
   CHECK(mesh.velocity.at(w).y == 3);
   CHECK(mesh.velocity.at(w).z == 2);
   CHECK(mesh.operations[w] == 8);
+  CHECK(mesh.turns[w] == 6);
   CHECK(mesh.idle[w] == Mesh::kAwake);
   for (uint32_t v = 0; v < w; ++v) {
     CHECK(mesh.valence(v) == valences[v] + (v == e.a || v == e.b ? 1U : 0U));

@@ -88,12 +88,15 @@ TEST_CASE("the merged vertex goes where it is told, with the mean velocity", "[d
   mesh.velocity.set(e.v, {3, 2, 1});
   mesh.operations[e.u] = 4;
   mesh.operations[e.v] = 7;
+  mesh.turns[e.u] = 0x80 + 4;
+  mesh.turns[e.v] = 0x40 + 7;
   plc::delete_edge(mesh, e, {9, 8, 7});
   CHECK(mesh.at(e.u).x == 9);
   CHECK(mesh.at(e.u).y == 8);
   CHECK(mesh.velocity.at(e.u).x == 2);
   CHECK(mesh.velocity.at(e.u).z == 2);
   CHECK(mesh.operations[e.u] == 7);
+  CHECK(mesh.turns[e.u] == 0x80 + 7);
   CHECK(mesh.create({}, {}) == e.v);
 }
 

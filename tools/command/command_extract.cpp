@@ -191,6 +191,10 @@ class Extraction {
           stdout);
       std::fflush(stdout);
     }
+    for (const std::string& line :
+         unfinished_levels(context_.get(), surface_.get(), job.parameters.max_iterations)) {
+      std::fprintf(stderr, "pellicle: %s\n", line.c_str());
+    }
     tell_precision(doubles_, job.output);
   }
 

@@ -90,7 +90,22 @@ Json level_json(const plc_level_report& level) {
           {"late",
            {{"bubbles", level.late_bubbles},
             {"cavities", level.late_cavities},
-            {"volume", level.late_volume}}}};
+            {"volume", level.late_volume}}},
+          {"frozen", {{"sites", level.frozen_sites}, {"vertices", level.frozen_vertices}}}};
+}
+
+Json sites_json(plc_context* context, const plc_surface* surface, plc_space space) {
+  const int64_t count = plc_surface_frozen_site_count(surface);
+  std::vector<double> xyz(3 * static_cast<size_t>(count));
+  std::vector<int64_t> vertices(static_cast<size_t>(count));
+  demand(context,
+         plc_surface_frozen_sites(context, surface, space, xyz.data(), vertices.data(), count));
+  Json sites = Json::array();
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    sites.push_back(
+        {{"place", {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]}}, {"vertices", vertices[i]}});
+  }
+  return sites;
 }
 
 Json input_json(plc_context* context, const plc_image& image, const plc_surface* surface) {
@@ -121,6 +136,12 @@ std::string late_text(const plc_level_report& level) {
   if (level.late_bubbles + level.late_cavities == 0) return "";
   return format(", %" PRId64 " late bubbles and %" PRId64 " cavities of %.0f mm3",
                 level.late_bubbles, level.late_cavities, level.late_volume);
+}
+
+std::string frozen_text(const plc_level_report& level) {
+  if (level.frozen_sites == 0) return "";
+  return format(", %" PRId64 " sites of %" PRId64 " vertices frozen", level.frozen_sites,
+                level.frozen_vertices);
 }
 
 }  // namespace
@@ -155,6 +176,7 @@ Json make_report(plc_context* context, const plc_image& image, const plc_surface
           {"parameters", parameters_json(parameters, options)},
           {"levels", levels},
           {"surface", surface_json(measures)},
+          {"sites", sites_json(context, surface, options.space)},
           {"seconds",
            {{"read", timings.read},
             {"pyramid", seconds.preparation},
@@ -191,10 +213,11 @@ std::string summary(plc_context* context, const plc_image& image, const plc_surf
   for (int i = 0; i < plc_surface_level_count(surface); ++i) {
     const plc_level_report level = level_of(context, surface, i);
     text += format("level %d  %" PRId64 " x %" PRId64 " x %" PRId64 "%s: %" PRId64
-                   " iterations, %" PRId64 " vertices, %.2f s%s%s\n",
+                   " iterations, %" PRId64 " vertices, %.2f s%s%s%s\n",
                    level.level, level.dims[0], level.dims[1], level.dims[2],
                    std::isnan(level.iso) ? "" : format(", iso %.5g", level.iso).c_str(),
                    level.iterations, level.vertices, level.seconds_total, late_text(level).c_str(),
+                   frozen_text(level).c_str(),
                    level.converged != 0  ? ""
                    : level.vertices == 0 ? ", holds no surface"
                                          : ", stopped at the most iterations");
@@ -205,6 +228,18 @@ std::string summary(plc_context* context, const plc_image& image, const plc_surf
   text += format("time     %.2f s, peak memory %.0f MiB\n", timings.total,
                  std::ceil(static_cast<double>(peak_rss_bytes()) / (1024.0 * 1024.0)));
   return text + "written  " + output + "\n";
+}
+
+std::vector<std::string> unfinished_levels(plc_context* context, const plc_surface* surface,
+                                           int max_iterations) {
+  std::vector<std::string> lines;
+  for (int i = 0; i < plc_surface_level_count(surface); ++i) {
+    const plc_level_report level = level_of(context, surface, i);
+    if (level.converged != 0 || level.vertices == 0) continue;
+    lines.push_back(format("level %d did not come to rest within --max-iterations %d", level.level,
+                           max_iterations));
+  }
+  return lines;
 }
 
 }  // namespace plc::tools

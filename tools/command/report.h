@@ -2,6 +2,7 @@
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "engine/pellicle.h"
 #include "tools/command/extract_options.h"
@@ -31,6 +32,10 @@ void write_report(const std::string& path, const nlohmann::ordered_json& report,
                   AtomicFiles& files);
 // Throws Failure unless a file can be made at `path`.
 void check_report_path(const std::string& path);
+
+// A line for each level that the most iterations have ended.
+std::vector<std::string> unfinished_levels(plc_context* context, const plc_surface* surface,
+                                           int max_iterations);
 
 // A few lines for people.
 std::string summary(plc_context* context, const plc_image& image, const plc_surface* surface,

@@ -149,6 +149,8 @@ class LevelReport:
         Of all of them as they started, mm3.
     moves, checks : int
         Of single vertices, and of their constraints after a movement.
+    frozen_sites, frozen_vertices : int
+        Sites that would never have come to rest and were frozen, and their vertices.
     """
 
     level: int
@@ -178,6 +180,8 @@ class LevelReport:
     late_volume: float
     moves: int
     checks: int
+    frozen_sites: int
+    frozen_vertices: int
 
 
 @dataclass(frozen=True)

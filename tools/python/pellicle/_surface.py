@@ -129,6 +129,15 @@ class Surface:
         return self._core.positions_f64(self._space)
 
     @property
+    def frozen_sites(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
+        """Where the surface would never have come to rest and was frozen.
+
+        (k, 3) float64 places and (k,) int64 vertices of each, those of most vertices first. The
+        surface is as valid there as anywhere, but not where its forces would have it.
+        """
+        return self._core.frozen_sites(self._space)
+
+    @property
     def faces(self) -> npt.NDArray[np.uint32]:
         """(m, 3) uint32 indices, counter-clockwise seen from outside in the space."""
         return self._core.faces(self._space)

@@ -67,7 +67,8 @@ py::dict dict_of(const plc_level_report& r) {
       "annular"_a = r.annular, "axial"_a = r.axial, "tetrahedra"_a = r.tetrahedra,
       "refinements"_a = r.refinements, "deferred"_a = r.deferred, "late_bubbles"_a = r.late_bubbles,
       "late_cavities"_a = r.late_cavities, "late_volume"_a = r.late_volume, "moves"_a = r.moves,
-      "checks"_a = r.checks);
+      "checks"_a = r.checks, "frozen_sites"_a = r.frozen_sites,
+      "frozen_vertices"_a = r.frozen_vertices);
 }
 
 py::dict dict_of(const plc_seconds& s) {

@@ -62,6 +62,19 @@ py::array_t<double> positions_f64(const AnySurface& surface, const std::string& 
       });
 }
 
+py::tuple frozen_sites(const AnySurface& surface, const std::string& space) {
+  const plc_space s = space_of(space);
+  const int64_t count = plc_surface_frozen_site_count(surface.checked());
+  py::array_t<int64_t> vertices(static_cast<py::ssize_t>(count));
+  int64_t* const sizes = vertices.mutable_data();
+  auto places = rows_of_three<double>(
+      surface, count,
+      [=](plc_context* context, const plc_surface* handle, double* xyz, int64_t capacity) {
+        return plc_surface_frozen_sites(context, handle, s, xyz, sizes, capacity);
+      });
+  return py::make_tuple(places, vertices);
+}
+
 py::array_t<float> normals(const AnySurface& surface, const std::string& space) {
   const plc_space s = space_of(space);
   return rows_of_three<float>(
@@ -168,6 +181,7 @@ void bind_surface(py::module_& module) {
       .def_property_readonly("face_count", &face_count)
       .def("positions", &positions)
       .def("positions_f64", &positions_f64)
+      .def("frozen_sites", &frozen_sites)
       .def("normals", &normals)
       .def("faces", &faces)
       .def("scalars", &scalars)
