@@ -150,7 +150,9 @@ class Builder {
     return {};
   }
 
-  void build(Mesh& mesh) {
+  void build(Mesh& mesh, Vector<uint64_t>* voxel) {
+    voxel_ = voxel;
+    if (voxel_ != nullptr) voxel_->resize(vertex_count());
     xyz_.resize(3 * vertex_count());
     faces_.resize(block_count(layers_, kLayers));
     for_layers([&](size_t block, size_t begin, size_t end) {
@@ -204,6 +206,13 @@ class Builder {
     visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, size_t d) {
       const Vec3 p = lattice_.crossing(x, y, z, d);
       xyz_[3 * id] = p.x, xyz_[3 * id + 1] = p.y, xyz_[3 * id + 2] = p.z;
+      if (voxel_ != nullptr) {
+        const bool here = slice.inside[lattice_.point(x, y)] != 0;
+        const size_t in_slice =
+            here ? lattice_.point(x, y) : lattice_.point(x + (d & 1), y + (d >> 1 & 1));
+        const size_t slices_up = here ? 0 : d >> 2 & 1;
+        (*voxel_)[id] = uint64_t{z + slices_up} * lattice_.slice_points() + in_slice;
+      }
       ++id;
     });
   }
@@ -260,16 +269,18 @@ class Builder {
   size_t layers_;
   Vector<size_t> first_id_;  // per slice
   Vector<float> xyz_;
+  Vector<uint64_t>* voxel_ = nullptr;
   Vector<Vector<Face>> faces_;
 };
 
 }  // namespace
 
 Status iso_surface(const ImageView& image, const LatticeValues& values, float iso,
-                   bool inside_above, const Executor& executor, Mesh& mesh) {
+                   bool inside_above, const Executor& executor, Mesh& mesh,
+                   Vector<uint64_t>* voxel) {
   Builder builder(image, values, iso, inside_above, executor);
   if (Status s = builder.count(); !s.ok()) return s;
-  builder.build(mesh);
+  builder.build(mesh, voxel);
   return {};
 }
 

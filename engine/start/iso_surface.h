@@ -11,6 +11,7 @@
 #include "engine/mesh/mesh.h"
 #include "kernels/image.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 #include "pyramid/status.h"
 
 namespace plc {
@@ -39,8 +40,10 @@ struct LatticeValues {
   std::function<float(int32_t x, int32_t y, int32_t z)> at;  // the same values
 };
 
-// The same of such values; of `image` dims, scale and offset are read alone.
+// The same of such values; of `image` dims, scale and offset are read alone. `voxel` gets, for each
+// vertex, a number of the voxel inside on whose edge it lies.
 Status iso_surface(const ImageView& image, const LatticeValues& values, float iso,
-                   bool inside_above, const Executor& executor, Mesh& mesh);
+                   bool inside_above, const Executor& executor, Mesh& mesh,
+                   Vector<uint64_t>* voxel = nullptr);
 
 }  // namespace plc

@@ -8,8 +8,8 @@
 #include "engine/measure/measures.h"
 #include "engine/mesh/mesh_append.h"
 #include "engine/resolve/conform.h"
-#include "engine/start/iso_surface.h"
 #include "engine/start/missed_places.h"
+#include "engine/start/regular_iso_surface.h"
 #include "kernels/image_value.h"
 #include "pyramid/memory.h"
 
@@ -110,7 +110,9 @@ Status start_late_bubbles(const ImageView& image, float iso, bool inside_above,
     if (count == 0) continue;
     const Cutout cutout(image, iso, inside_above, places, kind);
     Mesh part;
-    if (Status s = iso_surface(cutout.view(), cutout.values(), 0, true, schedule, part); !s.ok()) {
+    if (Status s =
+            regular_iso_surface(cutout.view(), cutout.values(), 0, true, schedule, simd, part);
+        !s.ok()) {
       return s;
     }
     Status s = conform(part, mesh.delta, schedule, simd, counts);

@@ -21,9 +21,9 @@ struct LateBubbles {
 
 // Finds the places of the image that are on the wrong side of the surface, apart from it by (3),
 // and hold a ball of kSmallestBubble delta: what is smaller the mesh cannot resolve. Each gets a
-// bubble with the shape of the place - its iso-surface, conform.h - and grows together with the
-// rest from there. Spheres do not do: in a thin or faint part the curvature of one that fits holds
-// it down, and it never fills the part. Bubbles around a cavity face inward.
+// bubble with the shape of the place - regular_iso_surface.h, conform.h - and grows together with
+// the rest from there. Spheres do not do: in a thin or faint part the curvature of one that fits
+// holds it down, and it never fills the part. Bubbles around a cavity face inward.
 //
 // `tried`: of the image's voxels, or of none yet; places with a voxel in it are left out, what is
 // started is put in. Nothing of the image's size is allocated: sets of voxels are held where they

@@ -1,0 +1,21 @@
+// The iso-surface with vertices about a voxel apart: a quarter of those of iso_surface.h, so that
+// little is left to be done before it is as coarse as the mesh.
+//
+// After Treece, Prager and Gee, "Regularised marching tetrahedra" (Computers & Graphics 23, 1999):
+// the crossings on the edges of one voxel that is inside are merged into one vertex, on the
+// iso-surface, where the surface stays a manifold. They keep crossings apart beforehand, by cases;
+// here crossings are merged as long as edges may be contracted, and apart again where the faces
+// then meet.
+#pragma once
+#include "engine/base/schedule.h"
+#include "engine/start/iso_surface.h"
+#include "kernels/simd.h"
+
+namespace plc {
+
+// As iso_surface(); embedded, with other vertices, and without gaps in the ids.
+Status regular_iso_surface(const ImageView& image, const LatticeValues& values, float iso,
+                           bool inside_above, const Schedule& schedule, SimdTarget simd,
+                           Mesh& mesh);
+
+}  // namespace plc

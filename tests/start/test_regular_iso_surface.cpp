@@ -1,0 +1,85 @@
+#include "engine/start/regular_iso_surface.h"
+
+#include <catch2/catch.hpp>
+
+#include "kernels/image_value.h"
+#include "tests/samples/sample_runs.h"
+#include "tests/samples/sample_surfaces.h"
+
+namespace {
+
+using plc::Mesh;
+
+plc::ImageView view_of(const samples::Volume& volume) {
+  plc::ImageView view;
+  for (size_t a = 0; a < 3; ++a) {
+    view.dims[a] = static_cast<int32_t>(volume.dims[a]);
+    view.scale[a] = 1;
+    view.offset[a] = 0;
+  }
+  view.data = volume.values.data();
+  return view;
+}
+
+struct Both {
+  Mesh plain, regular;
+};
+
+Both surfaces_of(const samples::Volume& volume, float iso, int threads = 1) {
+  const plc::ImageView view = view_of(volume);
+  const plc::LatticeValues values{
+      [&](int32_t y, int32_t z, float* row) { plc::image_row(view, y, z, row); },
+      [&](int32_t x, int32_t y, int32_t z) { return plc::image_value(view, x, y, z); }};
+  const plc::Schedule schedule(threads);
+  Both both;
+  REQUIRE(plc::iso_surface(view, values, iso, true, schedule, both.plain).ok());
+  REQUIRE(plc::regular_iso_surface(view, values, iso, true, schedule, plc::best_simd_target(),
+                                   both.regular)
+              .ok());
+  return both;
+}
+
+}  // namespace
+
+TEST_CASE("a ball has a quarter of the vertices, and its place and volume",
+          "[regular_iso_surface]") {
+  const samples::Volume ball = samples::sphere_potential(samples::empty_volume({40, 40, 40}), 0.35);
+  const Both both = surfaces_of(ball, 0.5F);
+  CHECK(plc::broken_invariant(both.regular) == "");
+  CHECK(both.regular.in_order());
+  CHECK(samples::meeting_count(both.regular) == 0);
+  CHECK(samples::euler(both.regular) == 2);
+  CHECK(both.regular.vertex_count() * 3.5 < both.plain.vertex_count());
+  CHECK(samples::volume(both.regular) == Approx(samples::volume(both.plain)).epsilon(0.02));
+}
+
+TEST_CASE("whatever the voxels are, the topology stays and nothing meets",
+          "[regular_iso_surface]") {
+  for (const uint64_t seed : {1U, 2U, 3U, 4U}) {
+    samples::Volume volume = samples::noise(samples::empty_volume({24, 20, 22}), 2.5, seed);
+    samples::add_noise(volume, seed % 2 == 0 ? 0.5 : 0.05, seed + 10);
+    const Both both = surfaces_of(volume, 0.5F), again = surfaces_of(volume, 0.5F, 3);
+    CAPTURE(seed);
+    CHECK(plc::broken_invariant(both.regular) == "");
+    CHECK(samples::meeting_count(both.regular) == 0);
+    CHECK(samples::euler(both.regular) == samples::euler(both.plain));
+    CHECK(samples::component_count(both.regular) == samples::component_count(both.plain));
+    CHECK(both.regular.vertex_count() * 2 < both.plain.vertex_count());
+    CHECK(plc::state_hash(both.regular) == plc::state_hash(again.regular));
+  }
+}
+
+TEST_CASE("a plate of one voxel, and a single one, keep two sides", "[regular_iso_surface]") {
+  samples::Volume volume = samples::empty_volume({12, 12, 12});
+  volume.values.assign(12 * 12 * 12, 0.0F);
+  for (size_t y = 2; y < 10; ++y) {
+    for (size_t x = 2; x < 10; ++x) volume.values[(5 * 12 + y) * 12 + x] = 1;
+  }
+  volume.values[(10 * 12 + 1) * 12 + 1] = 1;
+  const Both both = surfaces_of(volume, 0.5F);
+  CHECK(plc::broken_invariant(both.regular) == "");
+  CHECK(samples::meeting_count(both.regular) == 0);
+  CHECK(samples::component_count(both.regular) == 2);
+  CHECK(samples::euler(both.regular) == 4);
+  CHECK(samples::volume(both.regular) > 0.3 * samples::volume(both.plain));
+}
