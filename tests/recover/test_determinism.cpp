@@ -159,7 +159,7 @@ TEST_CASE("the chain has the recorded hash for any threads and SIMD target", "[d
 TEST_CASE("a large run has the recorded hash for any threads and SIMD target, run after run",
           "[determinism]") {
   const Run run = large_run();
-  constexpr uint64_t kGolden = 0xC553A0D1FC087328;
+  constexpr uint64_t kGolden = 0xD95ADFC9DA050502;
   for (const SimdTarget target : targets()) {
     for (const int threads : kThreads) {
       for (int repeat = 0; repeat < (threads == 3 ? 2 : 1); ++repeat) {
