@@ -256,18 +256,16 @@ plc_status plc_surface_positions_f64(plc_context* context, const plc_surface* su
   });
 }
 
-int64_t plc_surface_frozen_site_count(const plc_surface* surface) {
-  return surface == nullptr || surface->records.empty() ? 0 : surface->records.back().frozen_sites;
-}
-
 plc_status plc_surface_frozen_sites(plc_context* context, const plc_surface* surface,
                                     plc_space space, double* xyz, int64_t* vertices,
-                                    int64_t capacity) {
+                                    int64_t capacity, int64_t* count) {
   return plc::guarded(context, [&]() -> Status {
     if (Status s = plc::check_surface(surface, space); !s.ok()) return s;
+    if (count == nullptr) return plc::bad_argument("count: must not be NULL");
     const auto sites = plc::frozen_sites(surface->mesh);
-    const auto count = static_cast<int64_t>(sites.size());
-    if (Status s = plc::check_room("xyz", xyz, capacity, count); !s.ok()) return s;
+    *count = static_cast<int64_t>(sites.size());
+    if (xyz == nullptr) return {};
+    if (Status s = plc::check_room("xyz", xyz, capacity, *count); !s.ok()) return s;
     const plc::Affine a = plc::affine_of(*surface, space);
     for (const plc::FrozenSite& site : sites) {
       const plc::Vec3 p = site.place;

@@ -58,11 +58,11 @@ inline constexpr int kConfirmPause = 20;
 
 // Of a vertex that may move as far as any. At 12 fronts that sweep through noise on their way
 // freeze in it: a direct run of a head CT ends with 819 handles instead of 54, at 20 with 86.
-// Coarse to fine, 20 changes its area by 2 in 10^5, and 8 by a hundredth.
+// Coarse to fine, 20 changes its area by 2 in 10^5.
 inline constexpr uint32_t kFreeTurns = 20;
 // Slower movements than this do not turn a vertex, in speeds that every vertex would have at the
-// energy epsilon. Less counts what is at rest for everyone but a counter: at 1 the same direct run
-// ends with 368 handles.
+// energy epsilon. Less freezes what only trembles: at 1, and 5 turns for a transformation, the same
+// direct run ends with 368 handles.
 inline constexpr double kTurnSpeed = 2;
 inline constexpr uint32_t kTransformationTurns = 3;
 
@@ -87,6 +87,8 @@ inline constexpr int kMaxOperationsPerVertex = 40;
 inline constexpr int kMaxAxialPasses = 10;
 // Rounds of one resolution pass; a safety net far above what was seen (12).
 inline constexpr int kMaxRounds = 200;
+// At the end of a level; 3 were needed where most.
+inline constexpr int kCheckPasses = 10;
 
 // ---- transformations ------------------------------------------------------------------------
 

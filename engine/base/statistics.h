@@ -12,6 +12,10 @@ struct OperationCounts {
   int64_t reverted = 0;    // movements taken back for the same reason, in vertices
   int64_t moves = 0;       // of single vertices, those in blocks that are awake
   int64_t checks = 0;      // of single vertices' constraints, after a movement
+
+  int64_t transformations() const {
+    return creation + inversion + deletion + annular + axial + tetrahedron;
+  }
 };
 
 struct Seconds {

@@ -5,11 +5,14 @@
 // side that it did not move to last, and when the motion guard takes it back; an annular or axial
 // transformation is kTransformationTurns at once for the vertices that it makes. From kFreeTurns on
 // each turn halves how far it may move; with kFrozenTurns it is frozen: it stays where it is until
-// the level ends. Turns are never taken back, and what is created starts with those of what it is
-// created from: a place goes round in circles so many times and no more.
+// the level ends. The turns that a vertex has left only become fewer while the level lasts; one
+// that two merge into has no more left than either, one between two others no more than the mean of
+// theirs. What moves for ever within an image turns for ever, so all of it freezes. Not covered is
+// what would make new vertices with turns left for ever: it was not seen, and --max-iterations ends
+// it.
 //
 // What has turned kFreeTurns times is not cut any more, and what is frozen not joined
-// (resolution.h): thin parts that break and grow again end as one piece.
+// (transform/candidate.h): thin parts that break and grow again end as one piece.
 //
 // One byte of a stream of the mesh: the number of turns, and above it the side of the last
 // movement, 1 outwards, 2 inwards, 0 none yet.
@@ -24,6 +27,8 @@ namespace plc {
 
 inline constexpr uint32_t kFrozenTurns = kFreeTurns + kernels::kSlowingTurns;
 static_assert(kFrozenTurns <= kernels::kTurnsMask);
+inline constexpr uint32_t kSideShift = 6;
+static_assert(kernels::kTurnsMask == (1U << kSideShift) - 1);
 
 inline uint32_t turns_of(uint8_t state) {
   return state & kernels::kTurnsMask;
@@ -37,6 +42,14 @@ inline uint8_t with_turns(uint8_t state, uint32_t turns) {
 // After so many more.
 inline uint8_t turned(uint8_t state, uint32_t turns) {
   return with_turns(state, turns_of(state) + turns);
+}
+// After a movement to a side, 1 or 2, or one too slow to count, 0. Without branches: it is run over
+// whole blocks.
+inline uint8_t moved_to_side(uint8_t state, uint32_t side) {
+  const uint32_t last = uint32_t{state} >> kSideShift;
+  const uint32_t turn = static_cast<uint32_t>(side + last == 3);
+  return static_cast<uint8_t>(std::min(turns_of(state) + turn, kFrozenTurns) |
+                              (side == 0 ? last : side) << kSideShift);
 }
 // Of a vertex between two others.
 inline uint8_t turns_between(uint8_t a, uint8_t b) {

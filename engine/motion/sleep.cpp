@@ -15,8 +15,6 @@ namespace plc {
 namespace {
 
 constexpr size_t kTaskCalm = 512;  // blocks
-constexpr int32_t kSideShift = 6;  // turns.h
-constexpr int32_t kBothSides = 3;
 
 bool all_calm(const Mesh& mesh, uint32_t block) {
   const uint8_t* calm = mesh.calm.data() + size_t{block} * kRingLanes;
@@ -43,12 +41,13 @@ uint32_t observe_block(Mesh& mesh, uint32_t first, const Limits& limits) {
   const Streams3 &move = mesh.displacement, &normal = mesh.normal;
   const float *dx = &move.x[first], *dy = &move.y[first], *dz = &move.z[first];
   const float *nx = &normal.x[first], *ny = &normal.y[first], *nz = &normal.z[first];
-  int32_t calm[kRingLanes], stir[kRingLanes], side[kRingLanes];
+  int32_t calm[kRingLanes], stir[kRingLanes];
+  uint32_t side[kRingLanes];
   for (uint32_t k = 0; k < kRingLanes; ++k) {
     const float outwards = dx[k] * nx[k] + dy[k] * ny[k] + dz[k] * nz[k];
     const float along = std::abs(outwards);
-    side[k] = static_cast<int32_t>(outwards > limits.turn) +
-              2 * static_cast<int32_t>(outwards < -limits.turn);
+    side[k] = static_cast<uint32_t>(outwards > limits.turn) +
+              2 * static_cast<uint32_t>(outwards < -limits.turn);
     const float squared = dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k];
     calm[k] = static_cast<int32_t>(along < limits.along) &
               static_cast<int32_t>(squared < limits.slide_squared);
@@ -56,13 +55,7 @@ uint32_t observe_block(Mesh& mesh, uint32_t first, const Limits& limits) {
     stir[k] = static_cast<int32_t>(std::min(along * limits.steps, 256.0F));
   }
   uint8_t* const turns = &mesh.turns[first];
-  for (uint32_t k = 0; k < kRingLanes; ++k) {
-    const auto count = static_cast<int32_t>(turns_of(turns[k])), last = turns[k] >> kSideShift;
-    const int32_t turn = static_cast<int32_t>(side[k] + last == kBothSides);
-    const int32_t most = static_cast<int32_t>(kFrozenTurns);
-    turns[k] = static_cast<uint8_t>(std::min(count + turn, most) | (side[k] == 0 ? last : side[k])
-                                                                       << kSideShift);
-  }
+  for (uint32_t k = 0; k < kRingLanes; ++k) turns[k] = moved_to_side(turns[k], side[k]);
   uint8_t* const calm_for = &mesh.calm[first];
   uint8_t* const stirred = &mesh.stir[first];
   int32_t most = 0;

@@ -2,6 +2,7 @@
 
 #include <cassert>
 
+#include "engine/base/constants.h"
 #include "engine/guard/self_meeting.h"
 #include "engine/mesh/mesh_invariants.h"
 
@@ -67,8 +68,12 @@ Status Evolution::iterate(const Guide& guide, Seconds& seconds, OperationCounts&
 
 void Evolution::check_all(Seconds& seconds, OperationCounts& counts) {
   const double start = now();
-  resolution_.take_all();
-  resolution_.run(++iteration_, counts);
+  for (int pass = 0; pass < kCheckPasses; ++pass) {
+    const int64_t before = counts.transformations();
+    resolution_.take_all();
+    resolution_.run(++iteration_, counts);
+    if (counts.transformations() == before) break;
+  }
   passed("check of all");
   const double end = now();
   seconds.topology += end - start;

@@ -13,7 +13,7 @@ namespace plc {
 
 // Beyond the model of the paper.
 struct EvolutionOptions {
-  Sleep::Speeds speeds{};
+  Sleep::Speeds speeds{};     // nothing sleeps, nothing freezes
   bool slow_vertices = true;  // 3.6; false: every vertex is checked in every iteration
 };
 
@@ -28,7 +28,8 @@ class Evolution {
   // constraints of the vertices that are due (of all: check_all). Fails where the user's force
   // does.
   Status iterate(const Guide& guide, Seconds& seconds, OperationCounts& counts);
-  // The constraints of all vertices, without a movement: at the end of a level.
+  // The constraints of all vertices, without a movement, until nothing changes any more: at the end
+  // of a level.
   void check_all(Seconds& seconds, OperationCounts& counts);
   // Tests all faces, not only those at risk. False when some meet; their vertices are at risk from
   // then on, so that the next iterations part them.

@@ -256,7 +256,6 @@ void Recovery::count_frozen() {
 void Recovery::check() {
   evolution_.check_all(record().seconds, record().operations);
   record().vertices = mesh_.vertex_count();
-  count_frozen();
   // The search for faces that meet takes twice as long where a twentieth of the ids lie anywhere.
   renumber();
   evolution_.restart();
@@ -298,6 +297,7 @@ Status Recovery::end_round() {
     renumber();
     evolution_.restart();
   }
+  count_frozen();
   phase_ = Phase::kVerdict;
   return {};
 }

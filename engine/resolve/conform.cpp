@@ -25,10 +25,6 @@ namespace {
 // forces they would be, for ever.
 constexpr uint32_t kIteration = 1;
 
-int64_t applied(const OperationCounts& c) {
-  return c.creation + c.inversion + c.deletion + c.annular + c.axial + c.tetrahedron;
-}
-
 // visit(u, v, squared length) for every edge, u < v.
 template <typename Visit>
 void visit_edges(const Mesh& mesh, const Visit& visit) {
@@ -98,12 +94,12 @@ void settle(Mesh& mesh, const Executor& executor, Resolution& resolution, Operat
   mesh.renumber(morton_order(mesh, executor), executor);
   resolution.restart();
   for (int pass = 0; pass < kConformPasses; ++pass) {
-    const int64_t before = applied(counts);
-    // What passes end here is that they change nothing any more.
+    const int64_t before = counts.transformations();
+    // Nothing freezes here: the passes end where one changes nothing, or there are too many.
     std::fill(mesh.turns.begin(), mesh.turns.end(), uint8_t{0});
     resolution.take_all();
     resolution.run(kIteration, counts);
-    if (applied(counts) == before) break;
+    if (counts.transformations() == before) break;
   }
 }
 

@@ -39,9 +39,11 @@ class Projection {
     const Vec3 way = in_voxels(p) - from;
     const float at_voxel = value(from), at_p = value(from + way);
     const float longer = (at_voxel - iso_) / (at_voxel - at_p);
-    // A NaN where values are equal: the mean stays.
-    const float part = longer > kShortest ? std::min(longer, kLongest) : kShortest;
-    const Vec3 q = from + way * (std::isnan(longer) ? 1.0F : part);
+    if (std::isnan(longer)) return p;
+    // No farther from the voxel than crossings are: late_bubbles.cpp counts on it.
+    const float farthest = std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z)});
+    const float longest = static_cast<float>(1 - kIsoMargin) / farthest;
+    const Vec3 q = from + way * std::min(std::clamp(longer, kShortest, kLongest), longest);
     return {(q.x - image_.offset[0]) / image_.scale[0], (q.y - image_.offset[1]) / image_.scale[1],
             (q.z - image_.offset[2]) / image_.scale[2]};
   }

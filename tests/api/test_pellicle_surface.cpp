@@ -192,13 +192,15 @@ TEST_CASE("where a surface was frozen is told, in every space", "[pellicle]") {
   samples::add_noise(volume, 0.1, 2);
   const plc_image image = samples::image_of(volume);
   const Surface noisy = samples::extract(context.get(), image, samples::parameters(0.5, 0));
-  const int64_t count = plc_surface_frozen_site_count(noisy.get());
+  int64_t count = 0;
+  REQUIRE(plc_surface_frozen_sites(context.get(), noisy.get(), PLC_SPACE_LPS, nullptr, nullptr, 0,
+                                   &count) == PLC_OK);
   REQUIRE(count > 0);
   const auto places = [&](plc_space space, std::vector<int64_t>& vertices) {
     std::vector<double> xyz(3 * static_cast<size_t>(count));
     vertices.resize(static_cast<size_t>(count));
     REQUIRE(plc_surface_frozen_sites(context.get(), noisy.get(), space, xyz.data(), vertices.data(),
-                                     count) == PLC_OK);
+                                     count, &count) == PLC_OK);
     return xyz;
   };
   std::vector<int64_t> vertices, again;
@@ -218,17 +220,20 @@ TEST_CASE("where a surface was frozen is told, in every space", "[pellicle]") {
     }
   }
   double none = 7;
-  CHECK(plc_surface_frozen_sites(context.get(), noisy.get(), PLC_SPACE_LPS, &none, nullptr, 0) ==
-        PLC_INVALID_ARGUMENT);
-  CHECK(plc_surface_frozen_sites(context.get(), nullptr, PLC_SPACE_LPS, &none, nullptr, 1) ==
-        PLC_INVALID_ARGUMENT);
+  int64_t there = 0;
+  CHECK(plc_surface_frozen_sites(context.get(), noisy.get(), PLC_SPACE_LPS, &none, nullptr,
+                                 count - 1, &there) == PLC_INVALID_ARGUMENT);
+  CHECK(there == count);
+  CHECK(plc_surface_frozen_sites(context.get(), noisy.get(), PLC_SPACE_LPS, &none, nullptr, 1,
+                                 nullptr) == PLC_INVALID_ARGUMENT);
+  CHECK(plc_surface_frozen_sites(context.get(), nullptr, PLC_SPACE_LPS, &none, nullptr, 1,
+                                 &there) == PLC_INVALID_ARGUMENT);
   CHECK(none == 7);
-  CHECK(plc_surface_frozen_site_count(nullptr) == 0);
   const Surface clean =
       samples::extract(context.get(), framed(kFrames[0]), samples::parameters(0.5, 0));
-  CHECK(plc_surface_frozen_site_count(clean.get()) == 0);
-  CHECK(plc_surface_frozen_sites(context.get(), clean.get(), PLC_SPACE_LPS, nullptr, nullptr, 0) ==
-        PLC_OK);
+  CHECK(plc_surface_frozen_sites(context.get(), clean.get(), PLC_SPACE_LPS, nullptr, nullptr, 0,
+                                 &there) == PLC_OK);
+  CHECK(there == 0);
 }
 
 TEST_CASE("the frame changes nothing but the places: the hash is of mesh space", "[pellicle]") {

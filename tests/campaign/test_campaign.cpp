@@ -293,6 +293,7 @@ TEST_CASE("random evolutions stay closed, oriented and embedded in every iterati
     INFO("alone: PELLICLE_CAMPAIGN_SEED=" << seeds[i]);
     CHECK(o.failure == "");
     // What is left at the end of a level is what the embedding guard refuses.
+    INFO(o.left.first);
     CHECK(o.left.resolvable == 0);
     finished += o.finished ? 1 : 0;
     sum.iterations += o.iterations;

@@ -280,10 +280,12 @@ class Caller {
          positions);
     left(plc_surface_positions_f64(context(), surface, space, maybe(2, exact.data()), vertices),
          exact);
-    const int64_t sites = plc_surface_frozen_site_count(surface) + input_.below(3) - 1;
-    Room<double> places(3 * sites);
-    left(plc_surface_frozen_sites(context(), surface, space, maybe(2, places.data()), nullptr,
-                                  sites),
+    int64_t sites = 0;
+    ok(plc_surface_frozen_sites(context(), surface, space, nullptr, nullptr, 0, &sites));
+    const int64_t room = sites + input_.below(3) - 1;
+    Room<double> places(3 * room);
+    left(plc_surface_frozen_sites(context(), surface, space, maybe(2, places.data()), nullptr, room,
+                                  &sites),
          places);
     left(plc_surface_normals(context(), surface, space, maybe(2, normals.data()), vertices),
          normals);

@@ -95,11 +95,12 @@ Json level_json(const plc_level_report& level) {
 }
 
 Json sites_json(plc_context* context, const plc_surface* surface, plc_space space) {
-  const int64_t count = plc_surface_frozen_site_count(surface);
+  int64_t count = 0;
+  demand(context, plc_surface_frozen_sites(context, surface, space, nullptr, nullptr, 0, &count));
   std::vector<double> xyz(3 * static_cast<size_t>(count));
   std::vector<int64_t> vertices(static_cast<size_t>(count));
-  demand(context,
-         plc_surface_frozen_sites(context, surface, space, xyz.data(), vertices.data(), count));
+  demand(context, plc_surface_frozen_sites(context, surface, space, xyz.data(), vertices.data(),
+                                           count, &count));
   Json sites = Json::array();
   for (size_t i = 0; i < vertices.size(); ++i) {
     sites.push_back(

@@ -64,13 +64,16 @@ py::array_t<double> positions_f64(const AnySurface& surface, const std::string& 
 
 py::tuple frozen_sites(const AnySurface& surface, const std::string& space) {
   const plc_space s = space_of(space);
-  const int64_t count = plc_surface_frozen_site_count(surface.checked());
+  int64_t count = 0;
+  surface.call([&](plc_context* context, const plc_surface* handle) {
+    return plc_surface_frozen_sites(context, handle, s, nullptr, nullptr, 0, &count);
+  });
   py::array_t<int64_t> vertices(static_cast<py::ssize_t>(count));
   int64_t* const sizes = vertices.mutable_data();
   auto places = rows_of_three<double>(
       surface, count,
-      [=](plc_context* context, const plc_surface* handle, double* xyz, int64_t capacity) {
-        return plc_surface_frozen_sites(context, handle, s, xyz, sizes, capacity);
+      [&](plc_context* context, const plc_surface* handle, double* xyz, int64_t capacity) {
+        return plc_surface_frozen_sites(context, handle, s, xyz, sizes, capacity, &count);
       });
   return py::make_tuple(places, vertices);
 }
