@@ -107,7 +107,8 @@ class MoveLanes {
   HWY_INLINE explicit MoveLanes(const MoveBound& bound)
       : length_(hn::Set(FloatTag(), bound.length)),
         speed_(hn::Set(FloatTag(), bound.speed)),
-        free_turns_(hn::Set(IntTag(), static_cast<int32_t>(bound.free_turns))) {}
+        free_turns_(hn::Set(IntTag(), static_cast<int32_t>(bound.free_turns))),
+        swinging_turns_(hn::Set(IntTag(), static_cast<int32_t>(bound.swinging_turns))) {}
 
   // Lanes kLanes * part .. of the block at `begin`.
   HWY_INLINE void move(const Arrival& arrival, const Float3s& moved, const MoveStreams& s,
@@ -115,12 +116,14 @@ class MoveLanes {
     const FloatTag d;
     const uint32_t i = begin + part * kLanes;
     const Floats3& v = arrival.velocity;
-    const Floats slowed = slowness(s.turns + i);
+    const IntLanes turns = count_of(s.turns + i);
+    const Floats slowed = slowness(turns);
     const Floats3 by =
         shortened(arrival.moved, dot(arrival.moved, arrival.moved), hn::Mul(length_, slowed));
     const Floats squared = dot(by, by);
     store3(by, moved, i);
-    store3(shortened(v, dot(v, v), hn::Mul(speed_, slowed)), s.velocity, i);
+    const Floats fastest = hn::IfThenElseZero(swings(turns), hn::Mul(speed_, slowed));
+    store3(shortened(v, dot(v, v), fastest), s.velocity, i);
     store_packed(load_packed(s.position + i) + by, s.moved_to + i);
     hn::StoreU(hn::Add(hn::LoadU(d, s.path + i), hn::Sqrt(squared)), d, s.path + i);
     longest_ = hn::IfThenElse(hn::Gt(squared, longest_), squared, longest_);
@@ -141,13 +144,20 @@ class MoveLanes {
 
  private:
   using IntTag = hn::Rebind<int32_t, FloatTag>;
+  using IntLanes = hn::Vec<IntTag>;
 
-  // 2^-(turns beyond the free ones), 0 for kSlowingTurns and more.
-  HWY_INLINE Floats slowness(const uint8_t* turns) const {
+  static HWY_INLINE IntLanes count_of(const uint8_t* turns) {
     const IntTag d;
-    const auto count = hn::And(hn::PromoteTo(d, hn::LoadU(hn::Rebind<uint8_t, FloatTag>(), turns)),
-                               hn::Set(d, static_cast<int32_t>(kTurnsMask)));
-    const auto beyond = hn::Max(hn::Sub(count, free_turns_), hn::Zero(d));
+    return hn::And(hn::PromoteTo(d, hn::LoadU(hn::Rebind<uint8_t, FloatTag>(), turns)),
+                   hn::Set(d, static_cast<int32_t>(kTurnsMask)));
+  }
+  HWY_INLINE FloatMask swings(IntLanes turns) const {
+    return hn::RebindMask(FloatTag(), hn::Not(hn::Gt(turns, swinging_turns_)));
+  }
+  // 2^-(turns beyond the free ones), 0 for kSlowingTurns and more.
+  HWY_INLINE Floats slowness(IntLanes turns) const {
+    const IntTag d;
+    const auto beyond = hn::Max(hn::Sub(turns, free_turns_), hn::Zero(d));
     constexpr int kExponentOfOne = 127, kMantissaBits = 23;
     const auto power = hn::ShiftLeft<kMantissaBits>(hn::Sub(hn::Set(d, kExponentOfOne), beyond));
     const auto moves = hn::Lt(beyond, hn::Set(d, static_cast<int32_t>(kSlowingTurns)));
@@ -155,7 +165,7 @@ class MoveLanes {
   }
 
   Floats length_, speed_;
-  hn::Vec<IntTag> free_turns_;
+  IntLanes free_turns_, swinging_turns_;
   Floats longest_ = hn::Zero(FloatTag());
   LaneSums energy_;
 };

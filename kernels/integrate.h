@@ -67,6 +67,8 @@ struct MoveBound {
   float speed;   // of the velocity
   // Up to so many turns of a vertex. Each one more halves them; with kSlowingTurns more they are 0.
   uint32_t free_turns;
+  // With more turns `speed` is 0.
+  uint32_t swinging_turns;
 };
 struct Movement {
   double energy = 0;   // sum of (d . n)^2, in the order of lane_sum.h: the kinetic energy along the

@@ -115,19 +115,20 @@ struct Sums {
   }
 };
 
-float slowness(uint8_t turns, uint32_t free_turns) {
-  const uint32_t count = turns & kTurnsMask;
-  if (count <= free_turns) return 1;
-  const uint32_t beyond = count - free_turns;
+float slowness(uint32_t turns, uint32_t free_turns) {
+  if (turns <= free_turns) return 1;
+  const uint32_t beyond = turns - free_turns;
   return beyond < kSlowingTurns ? 1.0F / static_cast<float>(1U << beyond) : 0.0F;
 }
 
 void move_vertex(const MoveBound& bound, const Triple& displacement, const Triple& new_velocity,
                  const Float3s& moved, const MoveStreams& s, uint32_t i, Sums& sums) {
-  const float slowed = slowness(s.turns[i], bound.free_turns);
+  const uint32_t turns = s.turns[i] & kTurnsMask;
+  const float slowed = slowness(turns, bound.free_turns);
   const Triple by = shortened(displacement, bound.length * slowed);
   set(moved, i, by);
-  set(s.velocity, i, shortened(new_velocity, bound.speed * slowed));
+  const float fastest = turns <= bound.swinging_turns ? bound.speed * slowed : 0;
+  set(s.velocity, i, shortened(new_velocity, fastest));
   const Packed& p = s.position[i];
   s.moved_to[i] = {p.x + by.x, p.y + by.y, p.z + by.z, 0.0F};
   s.path[i] += std::sqrt(dot(by, by));

@@ -212,7 +212,7 @@ kernels::MoveStreams ends(Bench& b) {
           b.mesh.path.data(),   b.mesh.turns.data()};
 }
 constexpr kernels::Rk4Coefficients kNewton{1, 0.5F, 1};
-constexpr kernels::MoveBound kBound{0.3F, 0.3F, 20};
+constexpr kernels::MoveBound kBound{0.3F, 0.3F, 20, 10};
 
 using Table = std::vector<std::pair<std::string, Kernel>>;
 

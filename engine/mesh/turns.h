@@ -3,13 +3,13 @@
 // On noise, and on parts thinner than (3) allows, the model never rests: tips grow, are cut off and
 // vanish, sheets join, are cut and recede. A vertex turns when it moves along its normal to the
 // side that it did not move to last, and when the motion guard takes it back; an annular or axial
-// transformation is kTransformationTurns at once for the vertices that it makes. From kFreeTurns on
-// each turn halves how far it may move; with kFrozenTurns it is frozen: it stays where it is until
-// the level ends. The turns that a vertex has left only become fewer while the level lasts; one
-// that two merge into has no more left than either, one between two others no more than the mean of
-// theirs. What moves for ever within an image turns for ever, so all of it freezes. Not covered is
-// what would make new vertices with turns left for ever: it was not seen, and --max-iterations ends
-// it.
+// transformation is kTransformationTurns at once for the vertices that it makes. With more than
+// kSwingingTurns it keeps no velocity; beyond kFreeTurns each turn halves how far it may move; with
+// kFrozenTurns it is frozen: it stays where it is until the level ends. The turns that a vertex has
+// left only become fewer while the level lasts; one that two merge into has no more left than
+// either, one between two others no more than the mean of theirs. What moves for ever within an
+// image turns for ever, so all of it freezes. Not covered is what would make new vertices with
+// turns left for ever: it was not seen, and --max-iterations ends it.
 //
 // What has turned kFreeTurns times is not cut any more, and what is frozen not joined
 // (transform/candidate.h): thin parts that break and grow again end as one piece.

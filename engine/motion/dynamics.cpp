@@ -327,7 +327,7 @@ kernels::MoveStreams Dynamics::move_streams() {
 
 kernels::MoveBound Dynamics::move_bound() const {
   const float longest = model_.max_move * static_cast<float>(mesh_.delta);
-  return {longest, longest / time_step_, kFreeTurns};
+  return {longest, longest / time_step_, kFreeTurns, kSwingingTurns};
 }
 
 void Dynamics::measure_rest_length(const Guide& guide) {

@@ -147,7 +147,7 @@ struct Step {
                                 -1.2F,
                                 0.4F};
   kernels::Rk4Coefficients newton{1.3F, 0.45F, 0.7F};
-  kernels::MoveBound bound{0.8F, 1.1F, 20};
+  kernels::MoveBound bound{0.8F, 1.1F, 20, 10};
   kernels::MoveStreams ends{rings.position.data(), moved_to.data(), velocity.out(),
                             normal.in(),           path.data(),     turns.data()};
 
