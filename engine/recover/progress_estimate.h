@@ -7,9 +7,10 @@
 namespace plc {
 
 // In units of work, not of time: movements of single vertices, and transformations as so many. What
-// is left of a round of iterations (recovery.h) is seen in how its energy falls and in what the
-// round before has taken; the finer levels cost more than the one before them by a constant factor.
-// Everything is counted, so that the estimate is the same for any number of threads.
+// is left of a round of iterations (recovery.h) is seen in its energy, which falls like about the
+// same power of the iterations on every image that was tried; the finer levels cost more than the
+// one before them by a constant factor. Everything is counted, so that the estimate is the same for
+// any number of threads.
 class ProgressEstimate {
  public:
   // What is known of the rest.
@@ -18,6 +19,7 @@ class ProgressEstimate {
     double vertices = 0;   // all, asleep or not
     int finer_levels = 0;  // after this one
     bool again = false;    // the last level may get late bubbles, and a round for them
+    bool late = false;     // the round is one for them
     bool calm = false;     // the round ends here
   };
 
@@ -31,20 +33,22 @@ class ProgressEstimate {
   template <typename Estimate, typename Visit>
   static void visit_fields(Estimate& e, const Visit& visit) {
     for (auto* n : {&e.iterations_, &e.before_}) visit(*n);
-    for (auto* x : {&e.earlier_work_, &e.work_, &e.rate_, &e.recent_, &e.past_}) visit(*x);
+    for (auto* n : {&e.moves_, &e.operations_}) visit(*n);
+    for (auto* x : {&e.earlier_work_, &e.work_, &e.rate_, &e.recent_}) visit(*x);
   }
 
  private:
-  void observe(double work, double energy);
+  void observe(const OperationCounts& level, double energy, double vertices);
   double round_left(const Ahead& ahead) const;
 
   int iterations_ = 0;       // of the round
   int before_ = 0;           // of the round before
+  int64_t moves_ = 0;        // of the level, up to the last iteration
+  int64_t operations_ = 0;   // ...
   double earlier_work_ = 0;  // of the levels before
   double work_ = 0;          // of the level
   double rate_ = 0;          // work per iteration, of the last ones
   double recent_ = 0;        // logarithm of the energy in epsilon, mean of the last iterations
-  double past_ = 0;          // ... of the round, later ones counting more as it gets longer
 };
 
 }  // namespace plc

@@ -393,6 +393,7 @@ void Recovery::estimate_progress() {
   ahead.iterations = iterations_left();
   ahead.vertices = mesh_.vertex_count();
   ahead.finer_levels = level_;
+  ahead.late = round_.late;
   ahead.calm = r.converged;
   // Bubbles come late where they came late before.
   const bool late = std::any_of(records_.begin(), records_.end(), [](const LevelRecord& l) {

@@ -38,9 +38,7 @@ TEST_CASE("what is left of the head CT is told within a factor of two from a fif
     const double start = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
     samples::extract(context.get(), volume.image, p, &extras);
     for (Told& t : told) t.cost -= start;
-    // With late bubbles the energy stays just above epsilon, where it may fall below at any time;
-    // how fast the processor is with them differs, too.
     CAPTURE(late);
-    CHECK(part_off(told) < (late == 1 ? 0.4 : 0.15));
+    CHECK(part_off(told) < 0.15);
   }
 }
