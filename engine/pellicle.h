@@ -526,9 +526,9 @@ PLC_API plc_status plc_surface_positions_f64(plc_context* context, const plc_sur
 /* Where the surface went round in circles and was frozen, so that its level could end: connected
  * vertices that stay where they are, those of most vertices first. The surface is as valid there as
  * anywhere, but is not where its forces would have it. count: how many sites there are, always set
- * where the other arguments are right. xyz: 3 doubles for each, the mean of its vertices; NULL: only
- * the count is asked for. vertices: how many these are, may be NULL. capacity: sites there is room
- * for; PLC_INVALID_ARGUMENT, and nothing but the count written, where there are more. */
+ * where the other arguments are right. xyz: 3 doubles for each, the mean of its vertices; NULL:
+ * only the count is asked for. vertices: how many these are, may be NULL. capacity: sites there is
+ * room for; PLC_INVALID_ARGUMENT, and nothing but the count written, where there are more. */
 PLC_API plc_status plc_surface_frozen_sites(plc_context* context, const plc_surface* surface,
                                             plc_space space, double* xyz, int64_t* vertices,
                                             int64_t capacity, int64_t* count);
