@@ -271,7 +271,7 @@ typedef struct plc_parameters {
   plc_force force;
   double attraction;       /* |alpha_I| (7), > 0 */
   double gradient;         /* alpha_gradI (8), along the normal; < 0: away from bright */
-  double gradient_tangent; /* beta_gradI (8), along the tangent plane */
+  double gradient_tangent; /* beta_gradI (8), along the tangent plane; may keep a level from rest */
   double gradient_bound;   /* norm of the gradient, in window per U_h, at which (8) is 1; > 0 */
   double mass;             /* m (4), > 0 */
   double damping;          /* gamma (4), >= 0 */
@@ -520,7 +520,7 @@ PLC_API plc_status plc_surface_positions(plc_context* context, const plc_surface
                                          plc_space space, float* xyz, int64_t capacity);
 /* As plc_surface_positions, in doubles: the engine's mesh, mapped to the space with no rounding to
  * floats in it, which makes faces meet where the surface lies millions of voxels away from the
- * space's origin. */
+ * space's origin, and rarely where parts of it all but touch. */
 PLC_API plc_status plc_surface_positions_f64(plc_context* context, const plc_surface* surface,
                                              plc_space space, double* xyz, int64_t capacity);
 /* Where the surface went round in circles and was frozen, so that its level could end: connected

@@ -8,8 +8,9 @@
 // kFrozenTurns it is frozen: it stays where it is until the level ends. The turns that a vertex has
 // left only become fewer while the level lasts; one that two merge into has no more left than
 // either, one between two others no more than the mean of theirs. What moves for ever within an
-// image turns for ever, so all of it freezes. Not covered is what would make new vertices with
-// turns left for ever: it was not seen, and --max-iterations ends it.
+// image turns for ever, so all of it freezes. Not covered is what makes new vertices with turns
+// left for ever: forces along the surface (beta_gradI) carry vertices from where they are made to
+// where they are merged. --max-iterations ends that.
 //
 // What has turned kFreeTurns times is not cut any more, and what is frozen not joined
 // (transform/candidate.h): thin parts that break and grow again end as one piece.

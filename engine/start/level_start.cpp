@@ -204,7 +204,9 @@ Status make_mesh(const StartSpec& spec, const LevelImage& level, const Executor&
   const Extent image = image_extent(level);
   for (size_t i = 0; i < spec.xyz.size(); i += 3) {
     const Seed point{{spec.xyz[i], spec.xyz[i + 1], spec.xyz[i + 2]}, {0, 0, 0}};
-    if (!within_reach(point, level.space, image)) {
+    // What is not finite import_mesh() refuses.
+    const bool finite = std::isfinite(spec.xyz[i] + spec.xyz[i + 1] + spec.xyz[i + 2]);
+    if (finite && !within_reach(point, level.space, image)) {
       return {ErrorCode::kInvalidArgument,
               "vertex " + std::to_string(i / 3) + " of the mesh lies too far beyond the image"};
     }

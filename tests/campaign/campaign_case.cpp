@@ -18,6 +18,7 @@ namespace {
 
 constexpr const char* kInitNames[] = {"bubble", "bubbles", "seeds", "iso", "mask", "mesh"};
 constexpr const char* kTypeNames[] = {"u8", "i16", "u16", "i32", "f32"};
+constexpr int64_t kEndless = int64_t{1} << 40;
 constexpr const char* kSpaceNames[] = {"LPS", "RAS", "voxel"};
 
 void choose_pyramid(Case& c) {
@@ -79,6 +80,36 @@ void choose_model(Case& c) {
   p.sleeping = random.integer(0, 2) == 0 ? 0 : 1;
   p.slow_vertices = random.integer(0, 3) == 0 ? 0 : 1;
   p.renumbering = random.integer(0, 5) == 0 ? 0 : 1;
+}
+
+// Of thin and noisy objects, too: what is drawn stays, how the surface moves over it is as shipped.
+// Nobody else pulls at it, or ends it before it rests.
+void choose_rest(Case& c, Random& random) {
+  plc_parameters defaults;
+  plc_parameters_defaults(&defaults);
+  plc_parameters& p = c.parameters;
+  c.rests = true;
+  constexpr double kCurvatures[] = {0.05, 0.1, 0.4, 0.4};
+  p.curvature = random.one_of(kCurvatures);
+  p.spring = defaults.spring;
+  p.attraction = defaults.attraction;
+  p.gradient = std::abs(p.gradient);
+  p.gradient_tangent = 0;  // turns.h
+  p.mass = defaults.mass;
+  p.damping = defaults.damping;
+  p.time_step = defaults.time_step;
+  p.max_move = defaults.max_move;
+  p.bound = defaults.bound;
+  p.epsilon = defaults.epsilon;
+  p.calm_speed = defaults.calm_speed;
+  p.max_iterations = defaults.max_iterations;
+  p.late_bubbles = p.sleeping = p.slow_vertices = p.renumbering = 1;
+  c.force = UserForce::kNone;
+  c.attachments.clear();
+  c.pins.clear();
+  c.more_level = c.stop_level = -1;
+  c.cancel_at = 0;
+  c.work = kEndless;
 }
 
 void choose_second(Case& c) {
@@ -161,6 +192,9 @@ Case make_case(uint64_t seed) {
   c.refusals.push_back({PLC_INVALID_DATA, "no surface: nothing in the image holds one"});
   // Strong springs, as long as edges may be, let a mesh grow for ever.
   c.refusals.push_back({PLC_INVALID_DATA, "its forces drive it on without end"});
+  Random rest = draws(seed, Part::kRest);
+  // Without an iso-value a surface may drift where there are no edges, for a thousand iterations.
+  if (once_in(rest, 8) && c.parameters.force != PLC_FORCE_GRADIENT) choose_rest(c, rest);
   Random random = draws(seed, Part::kFault);
   if (once_in(random, 16)) choose_fault(c, random);
   return c;
@@ -201,8 +235,8 @@ std::string description(const Case& c) {
       << " calm_speed " << p.calm_speed << " max_iterations " << p.max_iterations
       << " late_bubbles " << p.late_bubbles << " sleeping " << p.sleeping << " slow_vertices "
       << p.slow_vertices << " renumbering " << p.renumbering << " more " << c.more_level << " stop "
-      << c.stop_level << " cancel " << c.cancel_at << " work " << c.work << "\n  space "
-      << (c.space <= PLC_SPACE_VOXEL ? kSpaceNames[c.space] : "?")
+      << c.stop_level << " cancel " << c.cancel_at << " work " << c.work << " rests " << c.rests
+      << "\n  space " << (c.space <= PLC_SPACE_VOXEL ? kSpaceNames[c.space] : "?")
       << (c.fault.empty() ? "" : ", wrong on purpose: ") << c.fault << "\n  second run: threads "
       << way.threads << " target " << way.simd << " steps " << way.steps << " ownership "
       << way.ownership << " amount " << way.amount << " pause " << way.pause_at << " save "

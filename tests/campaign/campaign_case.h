@@ -26,7 +26,8 @@ enum class Part : uint64_t {
   kStart,
   kExtras,
   kRuns,
-  kFault
+  kFault,
+  kRest
 };
 inline Random draws(uint64_t seed, Part part) {
   return Random(seed * 16 + static_cast<uint64_t>(part));
@@ -87,6 +88,7 @@ struct Case {
   // Vertices times iterations after which the level is the last one, and after twice of which
   // progress cancels: strong springs, as long as edges may be, let a mesh grow for ever.
   int64_t work = 0;
+  bool rests = false;  // the shipped model and epsilon: every level is to converge
   bool without_seeds = false, without_mask = false, without_mesh = false;  // of a fault
   bool bad_count = false;                                                  // of a fault
 

@@ -22,9 +22,9 @@ bool comparable(const Case& c, const RunRecord& second) {
   return !out_of_memory && (c.fault.empty() || !c.second.steps);
 }
 
-constexpr const char* kFindingNames[kFindings] = {"none",       "invalid", "self-intersection",
-                                                  "rounded",    "status",  "invariant",
-                                                  "difference", "crash",   "hang"};
+constexpr const char* kFindingNames[kFindings] = {
+    "none",      "invalid",  "self-intersection", "rounded", "status",
+    "invariant", "restless", "difference",        "crash",   "hang"};
 
 }  // namespace
 

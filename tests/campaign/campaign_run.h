@@ -15,11 +15,12 @@ enum class Finding : uint8_t {
   kRounded,           // valid there, but not in the space that it was asked for
   kStatus,            // not one that is right for the input
   kInvariant,         // a value that cannot be, as an energy below 0
+  kRestless,          // a level that is to converge reaches max_iterations
   kDifference,        // between the two runs
   kCrash,
   kHang,
 };
-inline constexpr int kFindings = 9;
+inline constexpr int kFindings = 10;
 const char* finding_name(Finding finding);
 
 // One iteration as progress tells it; what differs first says where two runs part.

@@ -48,7 +48,10 @@ Point to_space(const Case& c, const Point& voxel) {
 void choose_bubbles(Case& c, Random& random) {
   plc_parameters& p = c.parameters;
   const bool crowded = once_in(random, 10);
-  if (crowded) c.refusals.push_back({PLC_INVALID_ARGUMENT, "bubbles "});
+  // In millimetres delta grows with voxels that are long.
+  if (crowded || p.anisotropy == PLC_ANISOTROPY_PHYSICAL) {
+    c.refusals.push_back({PLC_INVALID_ARGUMENT, "bubbles "});
+  }
   const double delta = reduction_of(c) / plc::kUnitPerDelta;
   for (size_t a = 0; a < 3; ++a) {
     const double step =

@@ -13,11 +13,10 @@ samples::Soup soup_of(plc_context* context, const plc_surface* surface, plc_spac
   samples::Soup soup;
   const int64_t vertices = plc_surface_vertex_count(surface);
   const int64_t faces = plc_surface_face_count(surface);
-  std::vector<float> xyz(static_cast<size_t>(vertices) * 3);
   soup.abc.resize(static_cast<size_t>(faces) * 3);
-  plc_surface_positions(context, surface, space, xyz.data(), vertices);
+  soup.xyz.resize(static_cast<size_t>(vertices) * 3);
+  plc_surface_positions_f64(context, surface, space, soup.xyz.data(), vertices);
   plc_surface_faces(context, surface, space, soup.abc.data(), faces);
-  soup.xyz.assign(xyz.begin(), xyz.end());
   return soup;
 }
 
@@ -126,6 +125,11 @@ void Watch::check_report(const plc_level_report& r) {
       int64_t{case_.parameters.max_iterations} * 4 * (r.level == case_.more_level ? 2 : 1);
   const bool finite = std::isfinite(r.energy) && std::isfinite(r.speed) && r.energy >= 0 &&
                       r.speed >= 0 && r.delta > 0 && r.unit > 0 && std::isfinite(r.late_volume);
+  if (case_.rests && r.converged == 0) {
+    fail(Finding::kRestless, "level " + std::to_string(r.level) + ": " +
+                                 std::to_string(r.iterations) + " iterations, energy " +
+                                 std::to_string(r.energy));
+  }
   if (finite && r.iterations >= 1 && r.iterations <= most && r.vertices >= 4) return;
   fail(Finding::kInvariant, "report of level " + std::to_string(r.level) + ": " +
                                 std::to_string(r.iterations) + " iterations, " +
