@@ -287,10 +287,6 @@ typedef struct plc_parameters {
   int sleeping;       /* 1: regions where nothing has moved for long are left alone until something
                          near them moves, and before a level ends; 0: never. Results differ within
                          what epsilon leaves open. Nothing sleeps with a force of the caller's */
-  int slow_vertices;  /* 1: the constraints of a vertex are checked when it has moved far enough, or
-                         after a while (3.6); 0: in every iteration */
-  int renumbering;    /* 1: vertices are numbered along a space-filling curve; 0: as they come,
-                         which is slower; for comparisons */
 } plc_parameters;
 
 PLC_API void plc_parameters_defaults(plc_parameters* parameters);

@@ -22,8 +22,8 @@ HWY_INLINE Floats3 lerp3(const Floats3& a, const Floats3& b, Floats t) {
 }
 
 // Bilinear in the plane of voxels: x, then y.
-HWY_INLINE Floats3 sample_plane(const Packed* plane, const Place& at) {
-  const Packed* next = plane + at.row;
+HWY_INLINE Floats3 sample_plane(const Float4* plane, const Place& at) {
+  const Float4* next = plane + at.row;
   const Floats3 low = lerp3(load_indexed(plane, at.cell), load_indexed(plane + 1, at.cell), at.x);
   const Floats3 high = lerp3(load_indexed(next, at.cell), load_indexed(next + 1, at.cell), at.x);
   return lerp3(low, high, at.y);
@@ -34,7 +34,7 @@ HWY_INLINE Floats3 sample(const GradientView& gradient, const Floats3& p) {
   return lerp3(sample_plane(gradient.data, at), sample_plane(gradient.data + at.plane, at), at.z);
 }
 
-void gradient_force(const GradientView& gradient, const Packed* position, const float* nx,
+void gradient_force(const GradientView& gradient, const Float4* position, const float* nx,
                     const float* ny, const float* nz, float along_normal, float along_tangent,
                     const std::array<float, 3>& map, uint32_t begin, uint32_t end, float* fx,
                     float* fy, float* fz) {
@@ -65,7 +65,7 @@ namespace plc::kernels {
 
 HWY_EXPORT(gradient_force);
 
-void gradient_force(SimdTarget simd, const GradientView& gradient, const Packed* position,
+void gradient_force(SimdTarget simd, const GradientView& gradient, const Float4* position,
                     const float* nx, const float* ny, const float* nz, float along_normal,
                     float along_tangent, const std::array<float, 3>& map, uint32_t begin,
                     uint32_t end, float* fx, float* fy, float* fz) {

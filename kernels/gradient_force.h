@@ -14,7 +14,7 @@ namespace plc::kernels {
 // along_normal = delta alpha and along_tangent = delta beta. `map` is a factor per axis, applied
 // last: {1, 1, 1} unless the mesh lives in another metric than its forces.
 // begin and end are multiples of kRingLanes.
-void gradient_force(SimdTarget simd, const GradientView& gradient, const Packed* position,
+void gradient_force(SimdTarget simd, const GradientView& gradient, const Float4* position,
                     const float* nx, const float* ny, const float* nz, float along_normal,
                     float along_tangent, const std::array<float, 3>& map, uint32_t begin,
                     uint32_t end, float* fx, float* fy, float* fz);

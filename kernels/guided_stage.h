@@ -14,10 +14,10 @@ namespace plc::kernels {
 
 struct SurfaceForces {
   RingView ring;
-  const Packed* laplacian;  // of the stage, from laplacian() over the whole mesh
+  const Float4* laplacian;  // of the stage, from laplacian() over the whole mesh
   float curvature;          // alpha_c
   ImageView image;
-  const Packed* position;  // of the stage
+  const Float4* position;  // of the stage
   ConstFloat3s normal;     // the step along the normal
   float attraction;        // delta alpha_I
   float iso;

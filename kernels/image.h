@@ -57,7 +57,7 @@ inline void with_voxel_type(ImageType type, const Body& body) {
 
 // A vector per voxel, by the same rules of place; w is not read.
 struct GradientView {
-  const Packed* data = nullptr;
+  const Float4* data = nullptr;
   int32_t dims[3] = {0, 0, 0};  // each >= 2; the product is below 2^31
   float scale[3] = {1, 1, 1};
   float offset[3] = {0, 0, 0};

@@ -18,7 +18,7 @@ using scalar::iso_force;
 using scalar::sample_trilinear;
 #else
 
-void sample_trilinear(const ImageView& image, const Packed* position, uint32_t begin, uint32_t end,
+void sample_trilinear(const ImageView& image, const Float4* position, uint32_t begin, uint32_t end,
                       float* values) {
   uint32_t i = begin;
   with_voxel_type(image.form.type, [&](auto voxel) HWY_ATTR {
@@ -30,7 +30,7 @@ void sample_trilinear(const ImageView& image, const Packed* position, uint32_t b
   scalar::sample_trilinear(image, position, i, end, values);
 }
 
-void iso_force(const ImageView& image, const Packed* position, const float* nx, const float* ny,
+void iso_force(const ImageView& image, const Float4* position, const float* nx, const float* ny,
                const float* nz, float coefficient, float iso, uint32_t begin, uint32_t end,
                float* fx, float* fy, float* fz) {
   with_voxel_type(image.form.type, [&](auto voxel) HWY_ATTR {
@@ -55,12 +55,12 @@ namespace plc::kernels {
 HWY_EXPORT(sample_trilinear);
 HWY_EXPORT(iso_force);
 
-void sample_trilinear(SimdTarget simd, const ImageView& image, const Packed* position,
+void sample_trilinear(SimdTarget simd, const ImageView& image, const Float4* position,
                       uint32_t begin, uint32_t end, float* values) {
   PLC_DISPATCH(simd, sample_trilinear)(image, position, begin, end, values);
 }
 
-void iso_force(SimdTarget simd, const ImageView& image, const Packed* position, const float* nx,
+void iso_force(SimdTarget simd, const ImageView& image, const Float4* position, const float* nx,
                const float* ny, const float* nz, float coefficient, float iso, uint32_t begin,
                uint32_t end, float* fx, float* fy, float* fz) {
   PLC_DISPATCH(simd, iso_force)

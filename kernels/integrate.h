@@ -19,13 +19,13 @@ struct ConstFloat3s {
 
 // The streams of one RK4 step of m x'' + gamma x' = f.
 struct Rk4Streams {
-  const Packed* position;  // at the start of the step
+  const Float4* position;  // at the start of the step
   ConstFloat3s velocity;   // at the start of the step
   Float3s speed;           // of the stage: read by stages 1..3, written by 0..2
   Float3s moved;           // weighted sum of stage velocities, written by stages 1..3;
                            // after stage 3 the displacement
   Float3s rate;            // weighted sum of accelerations; after stage 3 the new velocity
-  Packed* stage;           // position of the next stage, written by stages 0..2, w = 0
+  Float4* stage;           // position of the next stage, written by stages 0..2, w = 0
 };
 
 struct Rk4Coefficients {
@@ -55,8 +55,8 @@ inline constexpr uint32_t kSlowingTurns = 5;
 
 // The speed bound of 3.6, where a step ends, and what is measured of it.
 struct MoveStreams {
-  const Packed* position;  // before
-  Packed* moved_to;        // not `position`
+  const Float4* position;  // before
+  Float4* moved_to;        // not `position`
   Float3s velocity;        // written
   ConstFloat3s normal;     // of the energy
   float* path;

@@ -37,7 +37,7 @@ HWY_INLINE void prefetch_ring(const RingView& ring, uint32_t begin) {
   for (uint32_t k = 0; k < 8; ++k) prefetch(column + k * kRingLanes);
   prefetch(ring.valence + begin);
 }
-HWY_INLINE void prefetch_records(const Packed* records, uint32_t begin) {
+HWY_INLINE void prefetch_records(const Float4* records, uint32_t begin) {
   for (uint32_t i = 0; i < kRingLanes; i += 4) prefetch(records + begin + i);
 }
 
@@ -49,7 +49,7 @@ HWY_INLINE bool longer_than(Floats valence, uint32_t slots) {
 // Calls sum.add(mask of the lanes that have slot k, record of slot k) for k = 0 .. until no lane
 // has more, or the columns end.
 template <class Sum>
-HWY_INLINE void walk_ring(const RingView& ring, const Packed* record, uint32_t v, Floats valence,
+HWY_INLINE void walk_ring(const RingView& ring, const Float4* record, uint32_t v, Floats valence,
                           Sum& sum) {
   const FloatTag d;
   const uint32_t* column = columns_of(ring, v);
@@ -98,7 +98,7 @@ HWY_INLINE Floats inverse_valence(Floats valence) {
 inline constexpr uint32_t kCommonSlots = 6;
 
 // Sum of y - x over the ring. Slots past the valence hold the vertex itself and add +0.
-HWY_INLINE Floats3 difference_sum(const RingView& ring, const Packed* position, uint32_t v,
+HWY_INLINE Floats3 difference_sum(const RingView& ring, const Float4* position, uint32_t v,
                                   Floats valence) {
   const FloatTag d;
   const Records centre = load_records(SuccessiveRecords{position + v});
@@ -123,7 +123,7 @@ HWY_INLINE Floats3 difference_sum(const RingView& ring, const Packed* position, 
 
 // Sum of the records over the ring of every living vertex; records of deleted ones are 0. A living
 // vertex has three neighbours at least.
-HWY_INLINE Floats3 record_sum(const RingView& ring, const Packed* record, uint32_t v,
+HWY_INLINE Floats3 record_sum(const RingView& ring, const Float4* record, uint32_t v,
                               Floats valence) {
   const FloatTag d;
   Records sum{hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};

@@ -40,7 +40,7 @@ struct Metric {
 };
 
 // A record that is fetched by neighbour index: one aligned 16-byte load. w is 0.
-struct alignas(16) Packed {
+struct alignas(16) Float4 {
   float x, y, z, w;
 };
 

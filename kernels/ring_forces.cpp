@@ -28,7 +28,7 @@ using scalar::turned_faces;
 
 // visit(v) for vertices v .. v + kLanes - 1 of the blocks.
 template <class Visit>
-HWY_INLINE void for_lanes(const RingView& ring, const Packed* position, const Blocks& blocks,
+HWY_INLINE void for_lanes(const RingView& ring, const Float4* position, const Blocks& blocks,
                           const Visit& visit) {
   for (size_t b = 0; b < blocks.count; ++b) {
     if (blocks.comes(b + kAhead)) {
@@ -40,8 +40,8 @@ HWY_INLINE void for_lanes(const RingView& ring, const Packed* position, const Bl
   }
 }
 
-void laplacian(const RingView& ring, const Packed* position, const Blocks& blocks,
-               Packed* laplacian) {
+void laplacian(const RingView& ring, const Float4* position, const Blocks& blocks,
+               Float4* laplacian) {
   for_lanes(ring, position, blocks, [&](uint32_t v) HWY_ATTR {
     const Floats valence = load_valence(ring, v);
     const Floats3 sum = difference_sum(ring, position, v, valence);
@@ -49,7 +49,7 @@ void laplacian(const RingView& ring, const Packed* position, const Blocks& block
   });
 }
 
-void curvature_force(const RingView& ring, const Packed* laplacian, float alpha_c, uint32_t begin,
+void curvature_force(const RingView& ring, const Float4* laplacian, float alpha_c, uint32_t begin,
                      uint32_t end, float* fx, float* fy, float* fz) {
   const FloatTag d;
   const Floats alpha = hn::Set(d, alpha_c);
@@ -88,7 +88,7 @@ struct SpringSum {
   }
 };
 
-void spring_force(const RingView& ring, const Packed* position, float alpha_e, float rest_length,
+void spring_force(const RingView& ring, const Float4* position, float alpha_e, float rest_length,
                   const Metric& metric, uint32_t begin, uint32_t end, float* fx, float* fy,
                   float* fz) {
   const FloatTag d;
@@ -125,7 +125,7 @@ struct NormalSum {
 };
 
 // Of a sum whose ring was walked.
-HWY_INLINE Floats3 normal_of(const RingView& ring, const Packed* position, uint32_t v,
+HWY_INLINE Floats3 normal_of(const RingView& ring, const Float4* position, uint32_t v,
                              Floats valence, const NormalSum& walk) {
   const FloatTag d;
   Floats3 sum = walk.sum + cross(walk.last, walk.first);
@@ -138,7 +138,7 @@ HWY_INLINE Floats3 normal_of(const RingView& ring, const Packed* position, uint3
   return sum * hn::IfThenElseZero(some, hn::Div(hn::Set(d, 1.0F), length));
 }
 
-void normals(const RingView& ring, const Packed* position, const Blocks& blocks, float* nx,
+void normals(const RingView& ring, const Float4* position, const Blocks& blocks, float* nx,
              float* ny, float* nz) {
   for_lanes(ring, position, blocks, [&](uint32_t v) HWY_ATTR {
     const Floats valence = load_valence(ring, v);
@@ -158,8 +158,8 @@ struct NormalAndDifferenceSum : NormalSum {
   }
 };
 
-void normals_and_laplacian(const RingView& ring, const Packed* position, const Blocks& blocks,
-                           float* nx, float* ny, float* nz, Packed* laplacian) {
+void normals_and_laplacian(const RingView& ring, const Float4* position, const Blocks& blocks,
+                           float* nx, float* ny, float* nz, Float4* laplacian) {
   for_lanes(ring, position, blocks, [&](uint32_t v) HWY_ATTR {
     const Floats valence = load_valence(ring, v);
     NormalAndDifferenceSum walk(load_packed(position + v));
@@ -204,7 +204,7 @@ struct EdgeLimits {
   }
 };
 
-void edge_violations(const RingView& ring, const Packed* position, float min_squared,
+void edge_violations(const RingView& ring, const Float4* position, float min_squared,
                      float max_squared, const Blocks& blocks, uint8_t* flags) {
   const FloatTag d;
   const hn::RebindToSigned<FloatTag> d32;
@@ -253,7 +253,7 @@ struct TurnedFaces {
   }
 };
 
-void turned_faces(const RingView& ring, const Packed* position, const Blocks& blocks,
+void turned_faces(const RingView& ring, const Float4* position, const Blocks& blocks,
                   const float* nx, const float* ny, const float* nz, float most, uint8_t* flags) {
   const FloatTag d;
   const hn::RebindToSigned<FloatTag> d32;
@@ -282,7 +282,7 @@ struct LengthSum {
   }
 };
 
-double edge_length_sum(const RingView& ring, const Packed* position, const Metric& metric,
+double edge_length_sum(const RingView& ring, const Float4* position, const Metric& metric,
                        uint32_t begin, uint32_t end) {
   LaneSums sums;
   for (uint32_t block = begin; block < end; block += kRingLanes) {
@@ -321,31 +321,31 @@ HWY_EXPORT(edge_violations);
 HWY_EXPORT(turned_faces);
 HWY_EXPORT(edge_length_sum);
 
-void laplacian(SimdTarget simd, const RingView& ring, const Packed* position, const Blocks& blocks,
-               Packed* laplacian) {
+void laplacian(SimdTarget simd, const RingView& ring, const Float4* position, const Blocks& blocks,
+               Float4* laplacian) {
   PLC_DISPATCH(simd, laplacian)(ring, position, blocks, laplacian);
 }
 
-void curvature_force(SimdTarget simd, const RingView& ring, const Packed* laplacian, float alpha_c,
+void curvature_force(SimdTarget simd, const RingView& ring, const Float4* laplacian, float alpha_c,
                      uint32_t begin, uint32_t end, float* fx, float* fy, float* fz) {
   PLC_DISPATCH(simd, curvature_force)(ring, laplacian, alpha_c, begin, end, fx, fy, fz);
 }
 
-void spring_force(SimdTarget simd, const RingView& ring, const Packed* position, float alpha_e,
+void spring_force(SimdTarget simd, const RingView& ring, const Float4* position, float alpha_e,
                   float rest_length, const Metric& metric, uint32_t begin, uint32_t end, float* fx,
                   float* fy, float* fz) {
   PLC_DISPATCH(simd, spring_force)
   (ring, position, alpha_e, rest_length, metric, begin, end, fx, fy, fz);
 }
 
-void normals(SimdTarget simd, const RingView& ring, const Packed* position, const Blocks& blocks,
+void normals(SimdTarget simd, const RingView& ring, const Float4* position, const Blocks& blocks,
              float* nx, float* ny, float* nz) {
   PLC_DISPATCH(simd, normals)(ring, position, blocks, nx, ny, nz);
 }
 
-void normals_and_laplacian(SimdTarget simd, const RingView& ring, const Packed* position,
+void normals_and_laplacian(SimdTarget simd, const RingView& ring, const Float4* position,
                            const Blocks& blocks, float* nx, float* ny, float* nz,
-                           Packed* laplacian) {
+                           Float4* laplacian) {
   PLC_DISPATCH(simd, normals_and_laplacian)(ring, position, blocks, nx, ny, nz, laplacian);
 }
 
@@ -356,18 +356,18 @@ void metric_normals(SimdTarget simd, const Metric& metric, const float* nx, cons
   (metric, nx, ny, nz, begin, end, mx, my, mz, step_x, step_y, step_z);
 }
 
-void edge_violations(SimdTarget simd, const RingView& ring, const Packed* position,
+void edge_violations(SimdTarget simd, const RingView& ring, const Float4* position,
                      float min_squared, float max_squared, const Blocks& blocks, uint8_t* flags) {
   PLC_DISPATCH(simd, edge_violations)(ring, position, min_squared, max_squared, blocks, flags);
 }
 
-void turned_faces(SimdTarget simd, const RingView& ring, const Packed* position,
+void turned_faces(SimdTarget simd, const RingView& ring, const Float4* position,
                   const Blocks& blocks, const float* nx, const float* ny, const float* nz,
                   float most, uint8_t* flags) {
   PLC_DISPATCH(simd, turned_faces)(ring, position, blocks, nx, ny, nz, most, flags);
 }
 
-double edge_length_sum(SimdTarget simd, const RingView& ring, const Packed* position,
+double edge_length_sum(SimdTarget simd, const RingView& ring, const Float4* position,
                        const Metric& metric, uint32_t begin, uint32_t end) {
   return PLC_DISPATCH(simd, edge_length_sum)(ring, position, metric, begin, end);
 }

@@ -35,43 +35,43 @@ void for_vertices(const Blocks& blocks, const Visit& visit) {
 
 // Sums over the ring of one vertex, from slot 0 up. The vector kernels call them for vertices of
 // valence > kRingSlots, which are too rare to be worth vectors.
-Triple difference_sum(const RingView& ring, const Packed* position, uint32_t v);  // y - x
-Triple record_sum(const RingView& ring, const Packed* record, uint32_t v);
-Triple spring_sum(const RingView& ring, const Packed* position, float rest_length,
+Triple difference_sum(const RingView& ring, const Float4* position, uint32_t v);  // y - x
+Triple record_sum(const RingView& ring, const Float4* record, uint32_t v);
+Triple spring_sum(const RingView& ring, const Float4* position, float rest_length,
                   const Metric& metric, uint32_t v);
-Triple normal_sum(const RingView& ring, const Packed* position, uint32_t v);  // cross products
-uint8_t turned_flag(const RingView& ring, const Packed* position, const Triple& normal, float most,
+Triple normal_sum(const RingView& ring, const Float4* position, uint32_t v);  // cross products
+uint8_t turned_flag(const RingView& ring, const Float4* position, const Triple& normal, float most,
                     uint32_t v);
-uint8_t violation_flags(const RingView& ring, const Packed* position, float min_squared,
+uint8_t violation_flags(const RingView& ring, const Float4* position, float min_squared,
                         float max_squared, uint32_t v);
-float length_sum(const RingView& ring, const Packed* position, const Metric& metric, uint32_t v);
+float length_sum(const RingView& ring, const Float4* position, const Metric& metric, uint32_t v);
 
 // ring_forces.h
-void laplacian(const RingView& ring, const Packed* position, const Blocks& blocks,
-               Packed* laplacian);
-void normals_and_laplacian(const RingView& ring, const Packed* position, const Blocks& blocks,
-                           float* nx, float* ny, float* nz, Packed* laplacian);
-void curvature_force(const RingView& ring, const Packed* laplacian, float alpha_c, uint32_t begin,
+void laplacian(const RingView& ring, const Float4* position, const Blocks& blocks,
+               Float4* laplacian);
+void normals_and_laplacian(const RingView& ring, const Float4* position, const Blocks& blocks,
+                           float* nx, float* ny, float* nz, Float4* laplacian);
+void curvature_force(const RingView& ring, const Float4* laplacian, float alpha_c, uint32_t begin,
                      uint32_t end, float* fx, float* fy, float* fz);
-void spring_force(const RingView& ring, const Packed* position, float alpha_e, float rest_length,
+void spring_force(const RingView& ring, const Float4* position, float alpha_e, float rest_length,
                   const Metric& metric, uint32_t begin, uint32_t end, float* fx, float* fy,
                   float* fz);
-void normals(const RingView& ring, const Packed* position, const Blocks& blocks, float* nx,
+void normals(const RingView& ring, const Float4* position, const Blocks& blocks, float* nx,
              float* ny, float* nz);
 void metric_normals(const Metric& metric, const float* nx, const float* ny, const float* nz,
                     uint32_t begin, uint32_t end, float* mx, float* my, float* mz, float* step_x,
                     float* step_y, float* step_z);
-void turned_faces(const RingView& ring, const Packed* position, const Blocks& blocks,
+void turned_faces(const RingView& ring, const Float4* position, const Blocks& blocks,
                   const float* nx, const float* ny, const float* nz, float most, uint8_t* flags);
-void edge_violations(const RingView& ring, const Packed* position, float min_squared,
+void edge_violations(const RingView& ring, const Float4* position, float min_squared,
                      float max_squared, const Blocks& blocks, uint8_t* flags);
-double edge_length_sum(const RingView& ring, const Packed* position, const Metric& metric,
+double edge_length_sum(const RingView& ring, const Float4* position, const Metric& metric,
                        uint32_t begin, uint32_t end);
 
 // image_force.h
-void sample_trilinear(const ImageView& image, const Packed* position, uint32_t begin, uint32_t end,
+void sample_trilinear(const ImageView& image, const Float4* position, uint32_t begin, uint32_t end,
                       float* values);
-void iso_force(const ImageView& image, const Packed* position, const float* nx, const float* ny,
+void iso_force(const ImageView& image, const Float4* position, const float* nx, const float* ny,
                const float* nz, float coefficient, float iso, uint32_t begin, uint32_t end,
                float* fx, float* fy, float* fz);
 
@@ -83,7 +83,7 @@ void blend_rows(const std::array<const float*, 4>& rows, float y, float z, size_
                 float* out);
 
 // gradient_force.h
-void gradient_force(const GradientView& gradient, const Packed* position, const float* nx,
+void gradient_force(const GradientView& gradient, const Float4* position, const float* nx,
                     const float* ny, const float* nz, float along_normal, float along_tangent,
                     const std::array<float, 3>& map, uint32_t begin, uint32_t end, float* fx,
                     float* fy, float* fz);
@@ -134,7 +134,7 @@ void sobel_row(const SobelColumns& columns, size_t begin, size_t end,
 void sobel(const float* const* rows, size_t width, const std::array<float, 3>& scale,
            float* scratch, float* gx, float* gy, float* gz);
 void bound_vectors(const float* gx, const float* gy, const float* gz, size_t count, float bound,
-                   Packed* vectors);
+                   Float4* vectors);
 void vector_norms(const float* gx, const float* gy, const float* gz, size_t count, float factor,
                   float* norms);
 

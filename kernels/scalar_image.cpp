@@ -16,7 +16,7 @@ struct Place {
   float x, y, z;
 };
 
-Place locate(const GradientView& image, const Packed& p) {
+Place locate(const GradientView& image, const Float4& p) {
   const AxisCell x = axis_cell(p.x, image.scale[0], image.offset[0], image.dims[0]);
   const AxisCell y = axis_cell(p.y, image.scale[1], image.offset[1], image.dims[1]);
   const AxisCell z = axis_cell(p.z, image.scale[2], image.offset[2], image.dims[2]);
@@ -51,7 +51,7 @@ float trilinear(const AxisCell& x, const AxisCell& y, const AxisCell& z, const V
 }
 
 template <class Voxel>
-float sample(const ImageView& image, const Packed& p) {
+float sample(const ImageView& image, const Float4& p) {
   const AxisCell x = axis_cell(p.x, image.scale[0], image.offset[0], image.dims[0]);
   const AxisCell y = axis_cell(p.y, image.scale[1], image.offset[1], image.dims[1]);
   const AxisCell z = axis_cell(p.z, image.scale[2], image.offset[2], image.dims[2]);
@@ -75,7 +75,7 @@ float sample(const ImageView& image, const Packed& p) {
   });
 }
 
-Triple sample(const GradientView& gradient, const Packed& p) {
+Triple sample(const GradientView& gradient, const Float4& p) {
   const Place at = locate(gradient, p);
   return {trilinear(at, [&](int32_t voxel) { return gradient.data[voxel].x; }),
           trilinear(at, [&](int32_t voxel) { return gradient.data[voxel].y; }),
@@ -122,14 +122,14 @@ float weighted_sum(const float* weights, int32_t taps, const float* in, size_t s
 
 }  // namespace
 
-void sample_trilinear(const ImageView& image, const Packed* position, uint32_t begin, uint32_t end,
+void sample_trilinear(const ImageView& image, const Float4* position, uint32_t begin, uint32_t end,
                       float* values) {
   with_voxel_type(image.form.type, [&](auto voxel) {
     for (uint32_t i = begin; i < end; ++i) values[i] = sample<decltype(voxel)>(image, position[i]);
   });
 }
 
-void iso_force(const ImageView& image, const Packed* position, const float* nx, const float* ny,
+void iso_force(const ImageView& image, const Float4* position, const float* nx, const float* ny,
                const float* nz, float coefficient, float iso, uint32_t begin, uint32_t end,
                float* fx, float* fy, float* fz) {
   with_voxel_type(image.form.type, [&](auto voxel) {
@@ -153,7 +153,7 @@ void blend_rows(const std::array<const float*, 4>& rows, float y, float z, size_
   }
 }
 
-void gradient_force(const GradientView& gradient, const Packed* position, const float* nx,
+void gradient_force(const GradientView& gradient, const Float4* position, const float* nx,
                     const float* ny, const float* nz, float along_normal, float along_tangent,
                     const std::array<float, 3>& map, uint32_t begin, uint32_t end, float* fx,
                     float* fy, float* fz) {

@@ -50,10 +50,10 @@ struct Rk4State {
 };
 
 // Returns the next stage's position.
-Packed rk4_vertex(int stage, const Rk4Coefficients& c, const Rk4Streams& s, const Triple& force,
+Float4 rk4_vertex(int stage, const Rk4Coefficients& c, const Rk4Streams& s, const Triple& force,
                   uint32_t i, Rk4State& state) {
   state = {at(s.speed, i), at(s.moved, i), at(s.rate, i)};
-  const Packed& p = s.position[i];
+  const Float4& p = s.position[i];
   const Triple v = at(s.velocity, i);
   Rk4State& t = state;
   const float x = rk4_coordinate(stage, c, p.x, v.x, force.x, t.speed.x, t.moved.x, t.rate.x);
@@ -65,7 +65,7 @@ Packed rk4_vertex(int stage, const Rk4Coefficients& c, const Rk4Streams& s, cons
 void advance_vertex(int stage, const Rk4Coefficients& c, const Rk4Streams& s, const Triple& force,
                     uint32_t i) {
   Rk4State state;
-  const Packed next = rk4_vertex(stage, c, s, force, i, state);
+  const Float4 next = rk4_vertex(stage, c, s, force, i, state);
   set(s.moved, i, state.moved);
   set(s.rate, i, state.rate);
   if (stage == 3) return;
@@ -79,7 +79,7 @@ Triple surface_force(const SurfaceForces& f, float value, uint32_t i) {
   if (f.ring.valence[i] != 0) {
     const Triple around =
         times(record_sum(f.ring, f.laplacian, i), 1.0F / static_cast<float>(f.ring.valence[i]));
-    const Packed& own = f.laplacian[i];
+    const Float4& own = f.laplacian[i];
     bent = times({own.x - around.x, own.y - around.y, own.z - around.z}, f.curvature);
   }
   const Triple push = times(at(f.normal, i), f.attraction * (f.iso - value));
@@ -129,7 +129,7 @@ void move_vertex(const MoveBound& bound, const Triple& displacement, const Tripl
   set(moved, i, by);
   const float fastest = turns <= bound.swinging_turns ? bound.speed * slowed : 0;
   set(s.velocity, i, shortened(new_velocity, fastest));
-  const Packed& p = s.position[i];
+  const Float4& p = s.position[i];
   s.moved_to[i] = {p.x + by.x, p.y + by.y, p.z + by.z, 0.0F};
   s.path[i] += std::sqrt(dot(by, by));
   sums.add(by, at(s.normal, i), i);

@@ -8,7 +8,7 @@ namespace plc::kernels::scalar {
 
 namespace {
 
-Triple difference(const Packed& to, const Packed& from) {
+Triple difference(const Float4& to, const Float4& from) {
   return {to.x - from.x, to.y - from.y, to.z - from.z};
 }
 Triple cross(const Triple& a, const Triple& b) {
@@ -35,7 +35,7 @@ float inverse_valence(const RingView& ring, uint32_t v) {
 
 }  // namespace
 
-Triple difference_sum(const RingView& ring, const Packed* position, uint32_t v) {
+Triple difference_sum(const RingView& ring, const Float4* position, uint32_t v) {
   Triple sum;
   for (uint32_t k = 0; k < ring.valence[v]; ++k) {
     add(sum, difference(position[ring.slot(v, k)], position[v]));
@@ -43,16 +43,16 @@ Triple difference_sum(const RingView& ring, const Packed* position, uint32_t v) 
   return sum;
 }
 
-Triple record_sum(const RingView& ring, const Packed* record, uint32_t v) {
+Triple record_sum(const RingView& ring, const Float4* record, uint32_t v) {
   Triple sum;
   for (uint32_t k = 0; k < ring.valence[v]; ++k) {
-    const Packed& r = record[ring.slot(v, k)];
+    const Float4& r = record[ring.slot(v, k)];
     add(sum, {r.x, r.y, r.z});
   }
   return sum;
 }
 
-Triple spring_sum(const RingView& ring, const Packed* position, float rest_length,
+Triple spring_sum(const RingView& ring, const Float4* position, float rest_length,
                   const Metric& metric, uint32_t v) {
   Triple sum;
   for (uint32_t k = 0; k < ring.valence[v]; ++k) {
@@ -64,7 +64,7 @@ Triple spring_sum(const RingView& ring, const Packed* position, float rest_lengt
   return sum;
 }
 
-Triple normal_sum(const RingView& ring, const Packed* position, uint32_t v) {
+Triple normal_sum(const RingView& ring, const Float4* position, uint32_t v) {
   Triple sum;
   const uint32_t valence = ring.valence[v];
   if (valence == 0) return sum;
@@ -79,7 +79,7 @@ Triple normal_sum(const RingView& ring, const Packed* position, uint32_t v) {
   return sum;
 }
 
-uint8_t turned_flag(const RingView& ring, const Packed* position, const Triple& normal, float most,
+uint8_t turned_flag(const RingView& ring, const Float4* position, const Triple& normal, float most,
                     uint32_t v) {
   const uint32_t valence = ring.valence[v];
   if (valence == 0) return 0;
@@ -98,7 +98,7 @@ uint8_t turned_flag(const RingView& ring, const Packed* position, const Triple& 
   return turned(last, first) ? 1 : 0;
 }
 
-uint8_t violation_flags(const RingView& ring, const Packed* position, float min_squared,
+uint8_t violation_flags(const RingView& ring, const Float4* position, float min_squared,
                         float max_squared, uint32_t v) {
   uint8_t flags = 0;
   for (uint32_t k = 0; k < ring.valence[v]; ++k) {
@@ -109,7 +109,7 @@ uint8_t violation_flags(const RingView& ring, const Packed* position, float min_
   return flags;
 }
 
-float length_sum(const RingView& ring, const Packed* position, const Metric& metric, uint32_t v) {
+float length_sum(const RingView& ring, const Float4* position, const Metric& metric, uint32_t v) {
   float sum = 0;
   for (uint32_t k = 0; k < ring.valence[v]; ++k) {
     sum += length_in(metric, difference(position[ring.slot(v, k)], position[v]));
@@ -117,8 +117,8 @@ float length_sum(const RingView& ring, const Packed* position, const Metric& met
   return sum;
 }
 
-void laplacian(const RingView& ring, const Packed* position, const Blocks& blocks,
-               Packed* laplacian) {
+void laplacian(const RingView& ring, const Float4* position, const Blocks& blocks,
+               Float4* laplacian) {
   for_vertices(blocks, [&](uint32_t v) {
     const Triple sum = difference_sum(ring, position, v);
     const float inverse = inverse_valence(ring, v);
@@ -126,13 +126,13 @@ void laplacian(const RingView& ring, const Packed* position, const Blocks& block
   });
 }
 
-void normals_and_laplacian(const RingView& ring, const Packed* position, const Blocks& blocks,
-                           float* nx, float* ny, float* nz, Packed* laplacian) {
+void normals_and_laplacian(const RingView& ring, const Float4* position, const Blocks& blocks,
+                           float* nx, float* ny, float* nz, Float4* laplacian) {
   normals(ring, position, blocks, nx, ny, nz);
   scalar::laplacian(ring, position, blocks, laplacian);
 }
 
-void curvature_force(const RingView& ring, const Packed* laplacian, float alpha_c, uint32_t begin,
+void curvature_force(const RingView& ring, const Float4* laplacian, float alpha_c, uint32_t begin,
                      uint32_t end, float* fx, float* fy, float* fz) {
   for (uint32_t v = begin; v < end; ++v) {
     const Triple sum = record_sum(ring, laplacian, v);
@@ -144,7 +144,7 @@ void curvature_force(const RingView& ring, const Packed* laplacian, float alpha_
   }
 }
 
-void spring_force(const RingView& ring, const Packed* position, float alpha_e, float rest_length,
+void spring_force(const RingView& ring, const Float4* position, float alpha_e, float rest_length,
                   const Metric& metric, uint32_t begin, uint32_t end, float* fx, float* fy,
                   float* fz) {
   for (uint32_t v = begin; v < end; ++v) {
@@ -155,7 +155,7 @@ void spring_force(const RingView& ring, const Packed* position, float alpha_e, f
   }
 }
 
-void normals(const RingView& ring, const Packed* position, const Blocks& blocks, float* nx,
+void normals(const RingView& ring, const Float4* position, const Blocks& blocks, float* nx,
              float* ny, float* nz) {
   for_vertices(blocks, [&](uint32_t v) {
     const Triple sum = normal_sum(ring, position, v);
@@ -184,21 +184,21 @@ void metric_normals(const Metric& metric, const float* nx, const float* ny, cons
   }
 }
 
-void turned_faces(const RingView& ring, const Packed* position, const Blocks& blocks,
+void turned_faces(const RingView& ring, const Float4* position, const Blocks& blocks,
                   const float* nx, const float* ny, const float* nz, float most, uint8_t* flags) {
   for_vertices(blocks, [&](uint32_t v) {
     flags[v] = turned_flag(ring, position, {nx[v], ny[v], nz[v]}, most, v);
   });
 }
 
-void edge_violations(const RingView& ring, const Packed* position, float min_squared,
+void edge_violations(const RingView& ring, const Float4* position, float min_squared,
                      float max_squared, const Blocks& blocks, uint8_t* flags) {
   for_vertices(blocks, [&](uint32_t v) {
     flags[v] = violation_flags(ring, position, min_squared, max_squared, v);
   });
 }
 
-double edge_length_sum(const RingView& ring, const Packed* position, const Metric& metric,
+double edge_length_sum(const RingView& ring, const Float4* position, const Metric& metric,
                        uint32_t begin, uint32_t end) {
   double lane[kRingLanes] = {};
   for (uint32_t v = begin; v < end; ++v) {

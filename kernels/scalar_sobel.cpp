@@ -52,7 +52,7 @@ void sobel(const float* const* rows, size_t width, const std::array<float, 3>& s
 }
 
 void bound_vectors(const float* gx, const float* gy, const float* gz, size_t count, float bound,
-                   Packed* vectors) {
+                   Float4* vectors) {
   for (size_t i = 0; i < count; ++i) {
     const float own = length(gx[i], gy[i], gz[i]);
     const float divisor = own > bound ? own : bound;

@@ -74,7 +74,7 @@ HWY_INLINE Floats length(const float* gx, const float* gy, const float* gz, size
 }
 
 void bound_vectors(const float* gx, const float* gy, const float* gz, size_t count, float bound,
-                   Packed* vectors) {
+                   Float4* vectors) {
   const FloatTag d;
   const Floats most = hn::Set(d, bound);
   const size_t whole = count - count % kLanes;
@@ -117,7 +117,7 @@ void sobel(SimdTarget simd, const float* const* rows, size_t width,
 }
 
 void bound_vectors(SimdTarget simd, const float* gx, const float* gy, const float* gz, size_t count,
-                   float bound, Packed* vectors) {
+                   float bound, Float4* vectors) {
   PLC_DISPATCH(simd, bound_vectors)(gx, gy, gz, count, bound, vectors);
 }
 

@@ -45,7 +45,7 @@ void sobel(SimdTarget simd, const float* const* rows, size_t width,
 // lengths up to 1, longer ones 1 (both but for rounding). `bound` > 0; squares of the components
 // and of `bound` must be normal floats where they matter.
 void bound_vectors(SimdTarget simd, const float* gx, const float* gy, const float* gz, size_t count,
-                   float bound, Packed* vectors);
+                   float bound, Float4* vectors);
 
 // norms[i] = factor |g|, i < count.
 void vector_norms(SimdTarget simd, const float* gx, const float* gy, const float* gz, size_t count,

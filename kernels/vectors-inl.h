@@ -83,7 +83,7 @@ HWY_INLINE void store3(const Floats3& a, float* x, float* y, float* z, uint32_t 
   hn::StoreU(a.y, d, y + i);
   hn::StoreU(a.z, d, z + i);
 }
-HWY_INLINE void store_packed(const Floats3& a, Packed* to) {
+HWY_INLINE void store_packed(const Floats3& a, Float4* to) {
   const FloatTag d;
   hn::StoreInterleaved4(a.x, a.y, a.z, hn::Zero(d), d, &to->x);
 }
@@ -141,23 +141,23 @@ HWY_INLINE Floats4 load_transposed(const Load& load) {
 
 // Records index[0 .. N-1].
 struct IndexedRecords {
-  const Packed* record;
+  const Float4* record;
   const uint32_t* index;
   HWY_INLINE Quad operator()(uint32_t lane) const {
     return hn::Load(QuadTag(), &record[index[lane]].x);
   }
 };
-HWY_INLINE Floats3 load_indexed(const Packed* record, const uint32_t* index) {
+HWY_INLINE Floats3 load_indexed(const Float4* record, const uint32_t* index) {
   const Floats4 r = load_transposed(IndexedRecords{record, index});
   return {r.x, r.y, r.z};
 }
 
 // Records at[0 .. N-1].
 struct SuccessiveRecords {
-  const Packed* at;
+  const Float4* at;
   HWY_INLINE Quad operator()(uint32_t lane) const { return hn::Load(QuadTag(), &at[lane].x); }
 };
-HWY_INLINE Floats3 load_packed(const Packed* at) {
+HWY_INLINE Floats3 load_packed(const Float4* at) {
   const Floats4 r = load_transposed(SuccessiveRecords{at});
   return {r.x, r.y, r.z};
 }

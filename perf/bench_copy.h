@@ -31,7 +31,7 @@ inline void copy_mesh(const plc::Mesh& from, plc::Mesh& to) {
     to.path[w] = from.path[v];
     to.idle[w] = from.idle[v];
     to.calm[w] = from.calm[v];
-    to.stir[w] = from.stir[v];
+    to.drift[w] = from.drift[v];
     to.risk[w] = from.risk[v];
     to.operations[w] = from.operations[v];
     to.cut_id[w] = from.cut_id[v];

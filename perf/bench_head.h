@@ -13,16 +13,55 @@
 
 namespace bench {
 
+inline void demand(const plc::Status& status) {
+  if (!status.ok()) throw plc::tools::Failure{status.message()};
+}
+
+inline constexpr double kBone = 226;  // HU
+
+// The head CT, and the parameters of `pellicle extract --iso 226` for it.
+struct HeadVolume {
+  plc::tools::LoadedVolume file;
+  plc::VolumeView volume;
+  plc_parameters parameters{};
+  double background = 0;
+
+  // Throws Failure.
+  HeadVolume(const std::string& path, const plc::Schedule& schedule)
+      : file(plc::tools::read_volume(path)) {
+    volume.type = static_cast<plc::VoxelType>(file.image.type);
+    volume.voxels = file.image.voxels;
+    for (size_t a = 0; a < 3; ++a) {
+      volume.dims[a] = file.image.dims[a];
+      volume.spacing[a] = file.image.spacing[a];
+    }
+    plc_parameters_defaults(&parameters);
+    parameters.iso = kBone;
+    const auto range = plc::voxel_range(volume, schedule, plc::best_simd_target());
+    demand(plc::derive_parameters(volume, range, schedule, parameters, background));
+  }
+
+  // The pyramid of p, which differ from `parameters` in what is no value of the image, and what is
+  // done on it.
+  plc::RecoverySpec prepare(const plc_parameters& p, const plc::Schedule& schedule,
+                            plc::Pyramid& pyramid) const {
+    const plc::SimdTarget simd = plc::best_simd_target();
+    demand(plc::build_pyramid(volume, plc::pyramid_spec(p), schedule, simd, pyramid));
+    plc::RecoverySpec spec = plc::recovery_spec(p);
+    spec.isos = plc::covering_isos(pyramid, plc::normalised(p, kBone), true,
+                                   plc::level_iso_bound(p, background), schedule, simd);
+    return spec;
+  }
+};
+
 // The level above I_0 of a pyramid of reduction 1.19: 65,000 vertices, which is the size that the
 // paper gives its seconds for, in images about as large as those of the whole CT.
 struct Head {
-  static constexpr double kIso = 226;  // HU
   static constexpr double kReduction = 1.19;
   static constexpr int kLevels = 7;
   static constexpr int kMoving = 10;  // iterations after which the surface is taken while it moves
 
-  plc::tools::LoadedVolume ct;
-  plc::VolumeView volume;
+  HeadVolume ct;
   plc::PyramidSpec pyramid_spec;  // that of `pellicle extract`, rho = sqrt 3 and 3 levels
   plc::Pyramid pyramid;           // of reduction 1.19
   plc::RecoverySpec recovery;
@@ -31,39 +70,20 @@ struct Head {
   plc::Mesh moving;
 
   // Throws Failure.
-  Head(const std::string& path, const plc::Schedule& schedule) : ct(plc::tools::read_volume(path)) {
-    volume.type = static_cast<plc::VoxelType>(ct.image.type);
-    volume.voxels = ct.image.voxels;
-    for (size_t a = 0; a < 3; ++a) {
-      volume.dims[a] = ct.image.dims[a];
-      volume.spacing[a] = ct.image.spacing[a];
-    }
-    plc_parameters p;
-    plc_parameters_defaults(&p);
-    p.iso = kIso;
-    const plc::SimdTarget simd = plc::best_simd_target();
-    double background = 0;
-    const auto range = plc::voxel_range(volume, schedule, simd);
-    demand(plc::derive_parameters(volume, range, schedule, p, background));
-    pyramid_spec = plc::pyramid_spec(p);
+  Head(const std::string& path, const plc::Schedule& schedule)
+      : ct(path, schedule), pyramid_spec(plc::pyramid_spec(ct.parameters)) {
+    plc_parameters p = ct.parameters;
     p.reduction = kReduction;
     p.levels = kLevels;
     p.late_bubbles = 0;
-    demand(plc::build_pyramid(volume, plc::pyramid_spec(p), schedule, simd, pyramid));
-    recovery = plc::recovery_spec(p);
-    recovery.isos = plc::covering_isos(pyramid, plc::normalised(p, kIso), true,
-                                       plc::level_iso_bound(p, background), schedule, simd);
-    recover(schedule, simd);
+    recovery = ct.prepare(p, schedule, pyramid);
+    recover(schedule, plc::best_simd_target());
     guide.image = plc::image_view(pyramid, 1, recovery.pad_voxels,
                                   plc::mesh_space(pyramid, 1, recovery.anisotropy));
     guide.iso = static_cast<float>(recovery.isos[1]);
   }
 
  private:
-  static void demand(const plc::Status& status) {
-    if (!status.ok()) throw plc::tools::Failure{status.message()};
-  }
-
   void recover(const plc::Schedule& schedule, plc::SimdTarget simd) {
     plc::Mesh mesh;
     plc::RecoveryHooks hooks;

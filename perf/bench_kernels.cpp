@@ -21,8 +21,8 @@
 namespace {
 
 using plc::Buffer;
+using plc::Float4;
 using plc::Mesh;
-using plc::Packed;
 using plc::SimdTarget;
 using plc::Streams3;
 namespace kernels = plc::kernels;
@@ -41,8 +41,8 @@ class Hash {
     for (const float v : values) add(v);
   }
   void add(const Streams3& s) { add(s.x), add(s.y), add(s.z); }
-  void add(const Buffer<Packed>& records) {
-    for (const Packed& r : records) add(r.x), add(r.y), add(r.z), add(r.w);
+  void add(const Buffer<Float4>& records) {
+    for (const Float4& r : records) add(r.x), add(r.y), add(r.z), add(r.w);
   }
   uint64_t value() const { return hash_; }
 
@@ -55,16 +55,16 @@ struct Bench {
   bench::Image image;
   Mesh mesh;
   Streams3 force, speed, rate, moved;
-  Buffer<Packed> laplacian, stage;
+  Buffer<Float4> laplacian, stage;
   Streams3 start_velocity;
-  Buffer<Packed> start;
+  Buffer<Float4> start;
   plc::Vector<uint32_t> list;
   double sum = 0;
 
   explicit Bench(double shrink = 1) : mesh(bench::evolved_mesh(image, shrink)) {
     for (Streams3* s : {&force, &speed, &rate, &moved}) s->resize(n());
-    for (Buffer<Packed>* b : {&laplacian, &stage}) b->resize(n());
-    start = mesh.packed;
+    for (Buffer<Float4>* b : {&laplacian, &stage}) b->resize(n());
+    start = mesh.position;
     start_velocity = mesh.velocity;
     for (uint32_t i = 0; i < n() / plc::kRingLanes; ++i) list.push_back(i);
   }
@@ -73,7 +73,7 @@ struct Bench {
   plc::Blocks listed() const { return {list.data(), list.size()}; }
   // As at the start.
   void reset() {
-    std::fill(stage.begin(), stage.end(), Packed{});
+    std::fill(stage.begin(), stage.end(), Float4{});
     for (Streams3* s : {&force, &speed, &rate, &moved}) {
       for (Buffer<float>* b : {&s->x, &s->y, &s->z}) std::fill(b->begin(), b->end(), 0.25F);
     }
@@ -92,7 +92,7 @@ struct Bench {
     for (const Streams3* s : {&force, &speed, &rate, &moved, &mesh.normal, &mesh.velocity}) {
       h.add(*s);
     }
-    for (const Buffer<Packed>* b : {&laplacian, &stage, &mesh.packed}) h.add(*b);
+    for (const Buffer<Float4>* b : {&laplacian, &stage, &mesh.position}) h.add(*b);
     h.add(mesh.path);
     h.add(sum);
     return h.value();
@@ -207,7 +207,7 @@ kernels::SurfaceForces forces(Bench& b) {
           -0.8F,          bench::Image::kIso};
 }
 kernels::MoveStreams ends(Bench& b) {
-  return {b.start.data(),       b.mesh.packed.data(),
+  return {b.start.data(),       b.mesh.position.data(),
           raw(b.mesh.velocity), raw(std::as_const(b.mesh.normal)),
           b.mesh.path.data(),   b.mesh.turns.data()};
 }

@@ -151,7 +151,7 @@ void add_edges(Suite& suite, const Mesh& start) {
       const size_t count = b.mesh.padded() / plc::kRingLanes;
       const auto look = [&](size_t, size_t begin, size_t end) {
         const plc::Blocks part{nullptr, end - begin, static_cast<uint32_t>(begin), count - end};
-        plc::kernels::edge_violations(kSimd, b.mesh.rings(), b.mesh.packed.data(), least, most,
+        plc::kernels::edge_violations(kSimd, b.mesh.rings(), b.mesh.position.data(), least, most,
                                       part, flags->data());
       };
       return timed([&] { plc::run_blocks(b.schedule, count, plc::kTaskBlocks, look); });
@@ -177,20 +177,34 @@ void add_dynamics(Suite& suite, const Mesh& start) {
   }
 }
 
+void search_all(plc::Detection& detection) {
+  detection.list_all();
+  detection.update_hash();
+  detection.search();
+}
+
 // Constraints (1) to (3) of every vertex. What the motion guard looks for, too, after a movement is
 // the pass `look`.
 void add_resolution(Suite& suite, const std::string& name, const Mesh& start) {
   suite.add(name, start, [](Bench& b) {
-    auto resolution = std::make_shared<plc::Resolution>(b.mesh, b.schedule, kSimd);
-    const auto prepare = [&b, resolution] {
-      b.restore();
-      resolution->restart();
+    struct Parts {
+      explicit Parts(Bench& bench)
+          : detection(bench.mesh, bench.schedule, kSimd),
+            resolution(bench.mesh, bench.schedule, kSimd, detection) {}
+      plc::Detection detection;
+      plc::Resolution resolution;
     };
-    const auto measured = [resolution] {
+    auto parts = std::make_shared<Parts>(b);
+    const auto prepare = [&b, parts] {
+      b.restore();
+      parts->detection.restart();
+      parts->resolution.restart();
+    };
+    const auto measured = [parts] {
       plc::OperationCounts counts;
       return timed([&] {
-        resolution->take_all();
-        resolution->run(1, counts);
+        parts->detection.search_near_all();
+        parts->resolution.run(1, {}, counts);
       });
     };
     return Suite::Case{prepare, measured, [&b] { return hash_of(b.mesh); }};
@@ -200,14 +214,14 @@ void add_resolution(Suite& suite, const std::string& name, const Mesh& start) {
 // Around every vertex, for constraint (3) and for the motion guard.
 void add_look(Suite& suite, const Mesh& start) {
   suite.add("look", start, [](Bench& b) {
-    auto resolution = std::make_shared<plc::Resolution>(b.mesh, b.schedule, kSimd);
-    const auto prepare = [&b, resolution] {
+    auto detection = std::make_shared<plc::Detection>(b.mesh, b.schedule, kSimd);
+    const auto prepare = [&b, detection] {
       b.restore();
-      resolution->restart();
+      detection->restart();
     };
-    const auto measured = [resolution] { return timed([&] { resolution->take_due(true); }); };
-    const auto hash = [resolution] {
-      const auto& risk = resolution->surroundings().at_risk();
+    const auto measured = [detection] { return timed([&] { search_all(*detection); }); };
+    const auto hash = [detection] {
+      const auto& risk = detection->surroundings().at_risk();
       return bench::hash_bytes(risk.data(), risk.size() * sizeof(uint32_t));
     };
     return Suite::Case{prepare, measured, hash};
@@ -220,20 +234,20 @@ void add_guard(Suite& suite, const Mesh& start) {
     struct Parts {
       Parts(Bench& bench, const plc::Model& model)
           : dynamics(bench.mesh, bench.schedule, kSimd, model),
-            resolution(bench.mesh, bench.schedule, kSimd),
+            detection(bench.mesh, bench.schedule, kSimd),
             guard(bench.mesh, bench.schedule, kSimd) {}
       plc::Dynamics dynamics;
-      plc::Resolution resolution;
+      plc::Detection detection;
       plc::MotionGuard guard;
-      plc::Vector<uint32_t> blocks, due, back;
+      plc::Vector<uint32_t> blocks, back;
     };
     auto parts = std::make_shared<Parts>(b, suite.head().recovery.model);
     const auto prepare = [&b, &suite, parts] {
       b.restore();
-      parts->resolution.restart();
+      parts->detection.restart();
       plc::Seconds seconds;
       (void)parts->dynamics.step(suite.head().guide, seconds).ok();
-      parts->due = parts->resolution.take_due(true);
+      search_all(parts->detection);
       parts->back.clear();
       parts->blocks.resize(b.mesh.padded() / plc::kRingLanes);
       std::iota(parts->blocks.begin(), parts->blocks.end(), 0U);
@@ -241,8 +255,8 @@ void add_guard(Suite& suite, const Mesh& start) {
     const auto measured = [parts] {
       return timed([&] {
         parts->guard.find_folds(parts->blocks);
-        parts->guard.assess(parts->due, parts->resolution.surroundings().at_risk());
-        parts->guard.take_back(parts->dynamics.before(), parts->resolution.hash(), parts->back);
+        parts->guard.assess(parts->detection.due(), parts->detection.surroundings().at_risk());
+        parts->guard.take_back(parts->dynamics.before(), parts->detection.hash(), parts->back);
       });
     };
     return Suite::Case{prepare, measured, [&b] { return hash_of(b.mesh); }};
@@ -255,7 +269,7 @@ void add_meeting(Suite& suite, const Mesh& start) {
     auto search = std::make_shared<plc::MeetingSearch>();
     const auto measured = [&b, search] {
       return timed([&] {
-        search->find(b.mesh.rings(), b.mesh.slots(), b.mesh.packed.data(), nullptr, b.schedule);
+        search->find(b.mesh.rings(), b.mesh.slots(), b.mesh.position.data(), nullptr, b.schedule);
       });
     };
     const auto hash = [search] {
@@ -322,7 +336,8 @@ void add_pyramid(Suite& suite, const Mesh& start) {
     const auto measured = [&suite, &b, pyramid] {
       const Head& head = suite.head();
       return timed([&] {
-        (void)plc::build_pyramid(head.volume, head.pyramid_spec, b.schedule, kSimd, *pyramid).ok();
+        (void)plc::build_pyramid(head.ct.volume, head.pyramid_spec, b.schedule, kSimd, *pyramid)
+            .ok();
       });
     };
     const auto hash = [pyramid] {

@@ -52,7 +52,7 @@ void copy_values(const PyramidLevel& level, const Executor& executor, SimdTarget
 
 Status build_gradient(const PyramidLevel& level, const std::array<double, 3>& voxel_length,
                       double bound, const Executor& executor, SimdTarget simd,
-                      Buffer<Packed>& gradient) {
+                      Buffer<Float4>& gradient) {
   gradient.clear();
   Status status = check_units(voxel_length, bound);
   if (!status.ok()) return status;

@@ -23,6 +23,6 @@ namespace plc {
 // any target.
 Status build_gradient(const PyramidLevel& level, const std::array<double, 3>& voxel_length,
                       double bound, const Executor& executor, SimdTarget simd,
-                      Buffer<Packed>& gradient);
+                      Buffer<Float4>& gradient);
 
 }  // namespace plc

@@ -44,8 +44,6 @@ void plc_parameters_defaults(plc_parameters* p) {
   p->max_iterations = 500;
   p->late_bubbles = 1;
   p->sleeping = 1;
-  p->slow_vertices = 1;
-  p->renumbering = 1;
 }
 
 void plc_extras_defaults(plc_extras* extras) {

@@ -205,7 +205,7 @@ void take_extras(const plc_extras& e, const Frame& frame, RecoverySpec& spec) {
   VoxelMesh mesh =
       in_voxels(to_space, e.mesh_xyz, e.mesh_vertex_count, e.mesh_abc, e.mesh_face_count);
   spec.start.xyz = std::move(mesh.xyz);
-  spec.start.told.assign(e.mesh_xyz, e.mesh_xyz + 3 * e.mesh_vertex_count);
+  spec.start.as_given.assign(e.mesh_xyz, e.mesh_xyz + 3 * e.mesh_vertex_count);
   spec.start.abc = std::move(mesh.abc);
 }
 

@@ -23,7 +23,7 @@ class HostForce {
                   ? 1.0
                   : *std::min_element(frame.spacing.begin(), frame.spacing.end())) {}
 
-  Status add(int level, const MeshSpace& space, const Mesh& mesh, const Packed* position,
+  Status add(int level, const MeshSpace& space, const Mesh& mesh, const Float4* position,
              Streams3& force) const {
     Vector<uint32_t> ids;
     for (uint32_t v = 0; v < mesh.slots(); ++v) {
@@ -34,7 +34,7 @@ class HostForce {
     constexpr size_t kChunk = 4096;
     executor_.run((n + kChunk - 1) / kChunk, [&](size_t chunk) {
       for (size_t i = chunk * kChunk; i < std::min(n, (chunk + 1) * kChunk); ++i) {
-        const Packed& p = position[ids[i]];
+        const Float4& p = position[ids[i]];
         put_point({p.x, p.y, p.z}, space, xyz.data() + 3 * i);
         put_normal(mesh.normal.at(ids[i]), space, normals.data() + 3 * i);
       }
@@ -102,7 +102,7 @@ class HostForce {
 LevelForce level_force(const plc_extras& extras, const Frame& frame, const Executor& executor) {
   if (extras.force == nullptr) return {};
   return [host = HostForce(extras, frame, executor)](
-             int level, const MeshSpace& space, const Mesh& mesh, const Packed* position,
+             int level, const MeshSpace& space, const Mesh& mesh, const Float4* position,
              Streams3& force) { return host.add(level, space, mesh, position, force); };
 }
 

@@ -246,10 +246,7 @@ std::unique_ptr<plc_surface> Run::surface() const {
   copy->host = host_;
   copy->mesh = surface_->mesh.copy();
   if (!copy->mesh.in_order()) {
-    copy->mesh.renumber(surface_->parameters.renumbering != 0
-                            ? morton_order(copy->mesh, host_->schedule)
-                            : living_order(copy->mesh),
-                        host_->schedule);
+    copy->mesh.renumber(morton_order(copy->mesh, host_->schedule), host_->schedule);
   }
   copy->space = surface_->space;
   copy->frame = surface_->frame;

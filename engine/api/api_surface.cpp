@@ -40,7 +40,7 @@ Status check_vertices(const plc_surface* surface, plc_space space, const char* n
 template <typename Real>
 void write_positions(const plc_surface& surface, const Affine& a, Real* xyz) {
   for (uint32_t v = 0; v < surface.mesh.slots(); ++v) {
-    const Packed& p = surface.mesh.packed[v];
+    const Float4& p = surface.mesh.position[v];
     const auto at =
         a.point({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
     for (const double x : at) *xyz++ = static_cast<Real>(x);

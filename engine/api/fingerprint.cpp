@@ -84,11 +84,11 @@ uint64_t parameters_hash(const plc_parameters& p) {
     hash.add(x);
   }
   for (int h = 0; h < p.level_iso_count; ++h) hash.add(p.level_iso[h]);
-  for (const int n : {p.inside_below, p.level_iso_count, static_cast<int>(p.feature), p.levels,
-                      static_cast<int>(p.init), p.bubbles[0], p.bubbles[1], p.bubbles[2],
-                      static_cast<int>(p.rest_length), static_cast<int>(p.force),
-                      static_cast<int>(p.bound), static_cast<int>(p.anisotropy), p.max_iterations,
-                      p.late_bubbles, p.sleeping, p.slow_vertices, p.renumbering}) {
+  for (const int n :
+       {p.inside_below, p.level_iso_count, static_cast<int>(p.feature), p.levels,
+        static_cast<int>(p.init), p.bubbles[0], p.bubbles[1], p.bubbles[2],
+        static_cast<int>(p.rest_length), static_cast<int>(p.force), static_cast<int>(p.bound),
+        static_cast<int>(p.anisotropy), p.max_iterations, p.late_bubbles, p.sleeping}) {
     hash.add(static_cast<uint32_t>(n));
   }
   return hash.value();

@@ -75,10 +75,6 @@ Status check_choices(const plc_parameters& p) {
        {"late bubbles", static_cast<double>(p.late_bubbles),
         p.late_bubbles == 0 || p.late_bubbles == 1, "0 or 1"},
        {"sleeping", static_cast<double>(p.sleeping), p.sleeping == 0 || p.sleeping == 1, "0 or 1"},
-       {"slow vertices", static_cast<double>(p.slow_vertices),
-        p.slow_vertices == 0 || p.slow_vertices == 1, "0 or 1"},
-       {"renumbering", static_cast<double>(p.renumbering), p.renumbering == 0 || p.renumbering == 1,
-        "0 or 1"},
        {"rest length", static_cast<double>(p.rest_length),
         p.rest_length >= PLC_REST_ZERO && p.rest_length <= PLC_REST_VALUE, "a plc_rest_length"},
        {"bound", static_cast<double>(p.bound),
@@ -244,8 +240,6 @@ RecoverySpec recovery_spec(const plc_parameters& p) {
   // Without the force towards iso nothing holds a bubble to what it tells.
   spec.late_bubbles = p.late_bubbles != 0 && p.force != PLC_FORCE_GRADIENT;
   spec.sleeping = p.sleeping != 0;
-  spec.slow_vertices = p.slow_vertices != 0;
-  spec.renumbering = p.renumbering != 0;
   spec.calm_speed = p.calm_speed;
   spec.epsilon = p.epsilon;
   spec.max_iterations = p.max_iterations;

@@ -15,7 +15,7 @@ inline Four load_four(const float* four) {
   std::memcpy(&f, four, sizeof f);
   return f;
 }
-inline Four load_four(const Packed& p) {
+inline Four load_four(const Float4& p) {
   return load_four(&p.x);
 }
 inline void store_four(Four f, float* four) {

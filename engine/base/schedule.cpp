@@ -224,14 +224,18 @@ std::string names(const std::vector<Pass>& passes, size_t begin, size_t end) {
 // The graph of the table by its levels. Its passes are loops over all vertices and nearly a chain:
 // nodes and edges built anew for every step would buy nothing over this. A host's threads are not
 // asked for loops within loops: passes then run in order.
-void Schedule::run_passes(const std::vector<Pass>& passes, bool small, const PassEnd& after) const {
+Status Schedule::run_passes(const std::vector<Pass>& passes, bool small,
+                            const PassEnd& after) const {
   const bool in_order = small || threads() == 1 || threads_.parallel_for != nullptr;
   std::vector<double> seconds(passes.size(), 0);
+  std::vector<Status> status(passes.size());
   const auto run_pass = [&](size_t i) {
     const double start = now();
-    passes[i].body();
+    status[i] = passes[i].body();
     seconds[i] = now() - start;
   };
+  const auto failed = [](const Status& s) { return !s.ok(); };
+  auto first_failed = status.end();
   for (size_t begin = 0, end = 0; begin < passes.size(); begin = end) {
     end = wave_end(passes, begin);
     if (in_order || end - begin == 1) {
@@ -240,9 +244,12 @@ void Schedule::run_passes(const std::vector<Pass>& passes, bool small, const Pas
       run(
           end - begin, [&](size_t i) { run_pass(begin + i); }, true);
     }
+    first_failed = std::find_if(status.begin(), status.end(), failed);
+    if (first_failed != status.end()) break;
     if (after) after(names(passes, begin, end));
   }
   for (size_t i = 0; i < passes.size(); ++i) *passes[i].seconds += seconds[i];
+  return first_failed == status.end() ? Status() : *first_failed;
 }
 
 double now() {

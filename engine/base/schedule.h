@@ -40,9 +40,12 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "pyramid/executor.h"
+#include "pyramid/status.h"
 
 namespace plc {
 
@@ -58,16 +61,40 @@ enum Resource : uint32_t {
   kDisplacements = 1U << 7,
   kEnergy = 1U << 8,
   kUserForce = 1U << 9,
+  kAwake = 1U << 10,  // who takes part in the step
+  kCalm = 1U << 11,   // for how long vertices have been calm, and their turns
+  kDue = 1U << 12,    // who is due for a check, and the paths and periods that say so
+  kHash = 1U << 13,
+  kSurroundings = 1U << 14,
+  kFolds = 1U << 15,
+  kRisk = 1U << 16,
+  kTakenBack = 1U << 17,
 };
+inline constexpr uint32_t kEverything = ~0U;
 
 // One row of the table of passes. Passes keep their order where one writes what the other reads or
 // writes; where not, they may run at the same time.
 struct Pass {
+  // seconds: where the time of the pass is added; not null, may be shared. body: returns a Status,
+  // or nothing where it cannot fail.
+  template <typename Body>
+  Pass(std::string called, uint32_t read, uint32_t written, double* time, Body run)
+      : name(std::move(called)), reads(read), writes(written), seconds(time) {
+    if constexpr (std::is_void_v<std::invoke_result_t<Body&>>) {
+      body = [run = std::move(run)]() mutable {
+        run();
+        return Status();
+      };
+    } else {
+      body = std::move(run);
+    }
+  }
+
   std::string name;
   uint32_t reads;
   uint32_t writes;
-  double* seconds;  // where the time of the pass is added; not null, may be shared
-  std::function<void()> body;
+  double* seconds;
+  std::function<Status()> body;
 };
 
 // Of the passes that have just ended: their names, with ", " between those that may run at the same
@@ -99,8 +126,10 @@ class Schedule final : public Executor {
   // several do - is thrown when all have ended.
   void run(size_t tasks, const std::function<void(size_t)>& body) const override;
   // Runs the table. `small`: in order, on the calling thread. `after`, which may be empty, is
-  // called at the same places of the table for any number of threads, while no pass runs.
-  void run_passes(const std::vector<Pass>& passes, bool small, const PassEnd& after = {}) const;
+  // called at the same places of the table for any number of threads, while no pass runs. Where a
+  // pass fails those that come after it are left out, and its Status is returned; of several the
+  // first in the table.
+  Status run_passes(const std::vector<Pass>& passes, bool small, const PassEnd& after = {}) const;
 
  private:
   class Arena;

@@ -64,7 +64,7 @@ bool centres_apart(const RiskStar& f, uint32_t k, const RiskStar& g, uint32_t i,
 RiskStar::RiskStar(const Mesh& mesh, uint32_t v)
     : faces(mesh.valence(v)), padded(faces / kLanes * kLanes + kLanes) {
   const auto set = [&](uint32_t k, uint32_t w) {
-    const Packed& p = mesh.packed[w];
+    const Float4& p = mesh.position[w];
     id[k] = w, x[k] = p.x, y[k] = p.y, z[k] = p.z;
   };
   set(0, v);

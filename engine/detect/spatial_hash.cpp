@@ -24,7 +24,7 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
   inverse_quantum_ = static_cast<float>(1 << kQuantaShift) / cell;
   slack_ = slack;
   const uint32_t n = mesh.slots();
-  const Packed* const packed = mesh.packed.data();
+  const Float4* const position = mesh.position.data();
   const uint32_t buckets = std::bit_ceil(std::max(n, 256U));
   const auto part_shift = static_cast<uint32_t>(std::countr_zero(buckets / kParts));
   mask_ = buckets - 1;
@@ -39,7 +39,7 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
     uint32_t count[kParts] = {};
     for (size_t i = begin; i < end; ++i) {
       const auto v = static_cast<uint32_t>(i);
-      if (mesh.alive(v)) ++count[bucket(quanta(load_four(packed[v]))) >> part_shift];
+      if (mesh.alive(v)) ++count[bucket(quanta(load_four(position[v]))) >> part_shift];
     }
     std::copy(count, count + kParts, part_start_.data() + block * kParts);
   });
@@ -61,7 +61,7 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
     for (size_t i = begin; i < end; ++i) {
       const auto v = static_cast<uint32_t>(i);
       if (!mesh.alive(v)) continue;
-      const FourInts q = quanta(load_four(packed[v]));
+      const FourInts q = quanta(load_four(position[v]));
       const uint32_t b = bucket(q);
       placed_[next[b >> part_shift]++] = {v, b, coarse_place(q[0], q[1], q[2])};
     }
@@ -163,16 +163,16 @@ void SpatialHash::collect(const Mesh& mesh, Vec3 low, Vec3 high, Collected& out)
     }
   }
   // Nothing that the loops write is among what they read: by pointers of their own.
-  const Packed* const packed = mesh.packed.data();
+  const Float4* const position = mesh.position.data();
   const uint32_t* const found = out.found.data();
   const uint32_t* const end = found + out.found.size();
-  for (const uint32_t* f = found; f != end; ++f) __builtin_prefetch(packed + *f);
+  for (const uint32_t* f = found; f != end; ++f) __builtin_prefetch(position + *f);
   const Four from{low.x, low.y, low.z, 0}, to{high.x, high.y, high.z, 0};
   out.ids.resize_uninitialized(out.found.size());
   uint32_t* within = out.ids.data();
   // Without branches: whether a vertex lies within is as good as random.
   for (const uint32_t* f = found; f != end; ++f) {
-    const Four at = load_four(packed[*f]);
+    const Four at = load_four(position[*f]);
     *within = *f;
     within += static_cast<size_t>(overlap_four(at, at, from, to));
   }

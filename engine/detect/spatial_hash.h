@@ -145,7 +145,7 @@ void SpatialHash::visit_late(uint32_t b, uint32_t last, const Visit& visit) cons
 template <typename Visit>
 void SpatialHash::visit_box(const Mesh& mesh, Vec3 low, Vec3 high, Visit&& visit) const {
   const auto look = [&](uint32_t v) {
-    const Packed& p = mesh.packed[v];
+    const Float4& p = mesh.position[v];
     if (p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z &&
         p.z <= high.z && mesh.alive(v)) {
       visit(v, Vec3{p.x, p.y, p.z});

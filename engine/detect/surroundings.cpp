@@ -112,7 +112,7 @@ void Surroundings::fetch(Wanted wanted, Scratch& scratch) const {
   scratch.hits.resize(std::max(scratch.hits.size(), count));
   auto& [x, y, z, nx, ny, nz] = scratch.streams;
   for (size_t i = 0; i < count; ++i) {
-    const Packed& p = mesh_.packed[scratch.around.ids[i]];
+    const Float4& p = mesh_.position[scratch.around.ids[i]];
     x[i] = p.x, y[i] = p.y, z[i] = p.z;
   }
   if (wanted == Wanted::kNear) return;

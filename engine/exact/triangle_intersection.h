@@ -27,14 +27,14 @@ struct Triangle {
   uint32_t vertex[3];
 };
 
-inline Point3 to_point(const Packed& p) {
+inline Point3 to_point(const Float4& p) {
   return {p.x, p.y, p.z};
 }
 inline Point3 to_point(const double* xyz) {
   return {xyz[0], xyz[1], xyz[2]};
 }
 
-inline Triangle make_triangle(const Packed* positions, const uint32_t* abc) {
+inline Triangle make_triangle(const Float4* positions, const uint32_t* abc) {
   return {{to_point(positions[abc[0]]), to_point(positions[abc[1]]), to_point(positions[abc[2]])},
           {abc[0], abc[1], abc[2]}};
 }
@@ -54,14 +54,14 @@ struct alignas(32) FaceBox {
   float high[4];
 };
 
-inline FaceBox face_box(const Packed& a, const Packed& b, const Packed& c) {
+inline FaceBox face_box(const Float4& a, const Float4& b, const Float4& c) {
   const Four pa = load_four(a), pb = load_four(b), pc = load_four(c);
   FaceBox box;
   store_four(min_four(min_four(pa, pb), pc), box.low);
   store_four(max_four(max_four(pa, pb), pc), box.high);
   return box;
 }
-inline FaceBox face_box(const Packed* positions, const uint32_t* abc) {
+inline FaceBox face_box(const Float4* positions, const uint32_t* abc) {
   return face_box(positions[abc[0]], positions[abc[1]], positions[abc[2]]);
 }
 
@@ -71,7 +71,7 @@ inline bool boxes_overlap(const FaceBox& f, const FaceBox& g) {
 
 // The faces f and g (three ids each) of a mesh of floats. Boxes first: the cheapest way to no.
 // Faces that are tested against many others are better served by keeping their FaceBox.
-inline bool faces_intersect(const Packed* positions, const uint32_t* f, const uint32_t* g) {
+inline bool faces_intersect(const Float4* positions, const uint32_t* f, const uint32_t* g) {
   return boxes_overlap(face_box(positions, f), face_box(positions, g)) &&
          triangles_intersect(make_triangle(positions, f), make_triangle(positions, g));
 }

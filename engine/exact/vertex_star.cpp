@@ -16,7 +16,7 @@ void Fan::add(const Vec3& place) {
   ++count_;
 }
 
-bool Fan::is_plain() {
+bool Fan::is_embedded() {
   if (count_ < 3 || count_ > kMax) return false;
   x_[count_] = x_[0], y_[count_] = y_[0], z_[count_] = z_[0];
   double cx[kMax], cy[kMax], cz[kMax];
@@ -32,11 +32,11 @@ bool Fan::is_plain() {
   // det(n, e, e') is known to about 20 |n| |e| |e'| 2^-53; what is left of 1e-12 covers what the
   // roundings of the edges themselves and of winds_once may turn.
   const double doubt = 1e-12 * longest_ * (std::abs(nx) + std::abs(ny) + std::abs(nz));
-  bool plain = true;
+  bool one_way = true;
   for (uint32_t k = 0; k < count_; ++k) {
-    plain &= cx[k] * nx + cy[k] * ny + cz[k] * nz > doubt;
+    one_way &= cx[k] * nx + cy[k] * ny + cz[k] * nz > doubt;
   }
-  return plain && winds_once(nx, ny, nz);
+  return one_way && winds_once(nx, ny, nz);
 }
 
 // Whether the edges, each to the left of the one before it about n, go around n once. q is
@@ -61,18 +61,18 @@ bool Fan::winds_once(double nx, double ny, double nz) const {
   return entries == 1;
 }
 
-bool fan_is_plain(const Vec3& centre, const Vec3* ring, size_t count) {
+bool fan_is_embedded(const Vec3& centre, const Vec3* ring, size_t count) {
   Fan fan(centre);
   for (size_t k = 0; k < count; ++k) fan.add(ring[k]);
-  return fan.is_plain();
+  return fan.is_embedded();
 }
 
-bool star_is_plain(const RingView& rings, const Packed* positions, uint32_t v) {
+bool star_is_embedded(const RingView& rings, const Float4* positions, uint32_t v) {
   const auto at = [&](uint32_t u) { return Vec3{positions[u].x, positions[u].y, positions[u].z}; };
   Fan fan(at(v));
   const uint32_t count = rings.valence[v];
   for (uint32_t k = 0; k < count; ++k) fan.add(at(rings.slot(v, k)));
-  return fan.is_plain();
+  return fan.is_embedded();
 }
 
 }  // namespace plc

@@ -18,7 +18,7 @@ class Fan {
   // normals, all faces turn counter-clockwise and go around the centre once, so that they project
   // one to one along n. Certain in spite of rounding; false where rounding leaves a doubt, and of
   // many faces. Neither has one of them a zero area then.
-  bool is_plain();
+  bool is_embedded();
 
  private:
   // Longer ones are left to the exact tests.
@@ -32,8 +32,8 @@ class Fan {
 };
 
 // Of the faces around v, which is alive; positions by id.
-bool star_is_plain(const RingView& rings, const Packed* positions, uint32_t v);
+bool star_is_embedded(const RingView& rings, const Float4* positions, uint32_t v);
 // Of the faces (centre, ring[k], ring[k + 1]) around a point.
-bool fan_is_plain(const Vec3& centre, const Vec3* ring, size_t count);
+bool fan_is_embedded(const Vec3& centre, const Vec3* ring, size_t count);
 
 }  // namespace plc

@@ -19,7 +19,7 @@ Point3 point(Vec3 p) {
   return {p.x, p.y, p.z};
 }
 
-Packed packed(Vec3 p) {
+Float4 position_of(Vec3 p) {
   return {p.x, p.y, p.z, 0};
 }
 
@@ -28,7 +28,7 @@ Triangle triangle_of(const Proposal::Face& face) {
           {face.id[0], face.id[1], face.id[2]}};
 }
 
-bool contains(const FaceBox& box, const Packed& p) {
+bool contains(const FaceBox& box, const Float4& p) {
   const Four at = load_four(p);
   return overlap_four(at, at, load_four(box.low), load_four(box.high));
 }
@@ -45,7 +45,7 @@ void include(FaceBox& all, const FaceBox& box) {
 }
 
 // Around a vertex, once its ring has changed; the vertex stays where it is.
-bool ring_is_plain(const Mesh& mesh, const Proposal::RingChange& change) {
+bool ring_is_embedded(const Mesh& mesh, const Proposal::RingChange& change) {
   const uint32_t v = change.vertex;
   Fan fan(mesh.at(v));
   const uint32_t d = mesh.valence(v);
@@ -55,7 +55,7 @@ bool ring_is_plain(const Mesh& mesh, const Proposal::RingChange& change) {
     if (w != change.neighbor || change.keeps) fan.add(mesh.at(w));
     if (w == change.neighbor) fan.add(change.place);
   }
-  return fan.is_plain();
+  return fan.is_embedded();
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ Proposal propose_creation(const Mesh& mesh, const Edge& e) {
     const size_t next = (k + 1) % 4;
     proposal.faces.push_back({{fresh, ring[k], ring[next]}, {place, around[k], around[next]}});
   }
-  proposal.plain = fan_is_plain(place, around.data(), around.size());
+  proposal.embedded = fan_is_embedded(place, around.data(), around.size());
   proposal.removed_edge = {e.u, e.v};
   // Around a, u comes after v; around b, v after u.
   proposal.rings = {{e.u, e.v, place, false},
@@ -101,7 +101,7 @@ Proposal propose_deletion(const Mesh& mesh, const Edge& e, Vec3 place) {
     const uint32_t next = k + 1 == ring.size() ? 0 : k + 1;
     proposal.faces.push_back({{e.u, ring[k], ring[next]}, {place, around[k], around[next]}});
   }
-  proposal.plain = fan_is_plain(place, around.data(), around.size());
+  proposal.embedded = fan_is_embedded(place, around.data(), around.size());
   proposal.removed_corners = {e.u, e.v};
   // First those that u has beside v, from b to a, then the others of v.
   bool of_u = true;
@@ -182,25 +182,27 @@ void EmbeddingGuard::take(const Mesh& mesh, const Proposal& proposal) {
   boxes_.clear();
   for (const auto& face : proposal.faces) {
     faces_.push_back(triangle_of(face));
-    boxes_.push_back(face_box(packed(face.place[0]), packed(face.place[1]), packed(face.place[2])));
+    boxes_.push_back(face_box(position_of(face.place[0]), position_of(face.place[1]),
+                              position_of(face.place[2])));
   }
   FaceBox all = boxes_[0];
   for (const FaceBox& box : boxes_) include(all, box);
   std::copy_n(all.low, 3, box_.low);
   std::copy_n(all.high, 3, box_.high);
-  plain_.clear();
+  embedded_.clear();
   for (const auto& change : proposal.rings) {
-    if (ring_is_plain(mesh, change)) plain_.push_back(change.vertex);
+    if (ring_is_embedded(mesh, change)) embedded_.push_back(change.vertex);
   }
-  plain_of_face_.clear();
-  for (const auto& face : proposal.faces) plain_of_face_.push_back(plain_corners(face.id.data()));
+  embedded_of_face_.clear();
+  for (const auto& face : proposal.faces)
+    embedded_of_face_.push_back(embedded_corners(face.id.data()));
 }
 
-// Which of plain_ are corners of a face.
-uint32_t EmbeddingGuard::plain_corners(const uint32_t* abc) const {
+// Which of embedded_ are corners of a face.
+uint32_t EmbeddingGuard::embedded_corners(const uint32_t* abc) const {
   uint32_t bits = 0;
-  for (size_t i = 0; i < plain_.size(); ++i) {
-    const uint32_t v = plain_[i];
+  for (size_t i = 0; i < embedded_.size(); ++i) {
+    const uint32_t v = embedded_[i];
     bits |= static_cast<uint32_t>(v == abc[0] || v == abc[1] || v == abc[2]) << i;
   }
   return bits;
@@ -208,7 +210,7 @@ uint32_t EmbeddingGuard::plain_corners(const uint32_t* abc) const {
 
 bool EmbeddingGuard::embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal) {
   take(mesh, proposal);
-  if (!proposal.plain && new_faces_meet()) return false;
+  if (!proposal.embedded && new_faces_meet()) return false;
   const float reach = kFaceReach * static_cast<float>(mesh.delta);
   FaceBox searched = widened(box_);
   for (int k = 0; k < 3; ++k) {
@@ -220,8 +222,8 @@ bool EmbeddingGuard::embeds(const Mesh& mesh, const SpatialHash& hash, const Pro
   // Each face once: from its smallest corner within the box.
   return clear_of(mesh, proposal, around_.ids.data(), around_.ids.size(),
                   [&](uint32_t x, uint32_t a, uint32_t b) {
-                    return (a > x || !contains(searched, mesh.packed[a])) &&
-                           (b > x || !contains(searched, mesh.packed[b]));
+                    return (a > x || !contains(searched, mesh.position[a])) &&
+                           (b > x || !contains(searched, mesh.position[b]));
                   });
 }
 
@@ -245,7 +247,7 @@ bool EmbeddingGuard::clear_of(const Mesh& mesh, const Proposal& proposal, const 
     return has(proposal.removed_edge[0]) && has(proposal.removed_edge[1]);
   };
   const RingView rings = mesh.rings();
-  const Packed* const at = mesh.packed.data();
+  const Float4* const at = mesh.position.data();
   const FaceBox all = widened(box_);
   for (const uint32_t* id = ids; id != ids + count; ++id) {
     const uint32_t x = *id, d = rings.valence[x];
@@ -258,11 +260,11 @@ bool EmbeddingGuard::clear_of(const Mesh& mesh, const Proposal& proposal, const 
       if (!boxes_overlap(box, all) || !counts(x, a, b)) continue;
       if (removed(a) || removed(b) || removed_edge(x, a, b)) continue;
       const uint32_t corners[3] = {x, a, b};
-      const uint32_t plain = plain_corners(corners);
+      const uint32_t embedded = embedded_corners(corners);
       const Triangle face = make_triangle(at, corners);
       for (size_t i = 0; i < boxes_.size(); ++i) {
-        // Faces around a plain vertex do not meet each other.
-        if ((plain & plain_of_face_[i]) == 0 && boxes_overlap(boxes_[i], box) &&
+        // Faces around a embedded vertex do not meet each other.
+        if ((embedded & embedded_of_face_[i]) == 0 && boxes_overlap(boxes_[i], box) &&
             triangles_intersect(faces_[i], face)) {
           return false;
         }

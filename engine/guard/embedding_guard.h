@@ -35,7 +35,7 @@ struct Proposal {
   Vector<RingChange> rings;
   static constexpr size_t kMaxRings = 32;
   // The new faces are known to have an area and to meet each other nowhere (vertex_star.h).
-  bool plain = false;
+  bool embedded = false;
 };
 
 // On the place of creation.h.
@@ -61,7 +61,7 @@ class EmbeddingGuard {
  private:
   void take(const Mesh& mesh, const Proposal& proposal);
   bool new_faces_meet() const;
-  uint32_t plain_corners(const uint32_t* abc) const;
+  uint32_t embedded_corners(const uint32_t* abc) const;
   template <typename Counts>
   bool clear_of(const Mesh& mesh, const Proposal& proposal, const uint32_t* ids, size_t count,
                 const Counts& counts) const;
@@ -70,8 +70,8 @@ class EmbeddingGuard {
   Vector<FaceBox> boxes_;
   Box3 box_{};
   // Those of `rings` around which no faces will meet each other; which of them each new face has.
-  Vector<uint32_t> plain_;
-  Vector<uint32_t> plain_of_face_;
+  Vector<uint32_t> embedded_;
+  Vector<uint32_t> embedded_of_face_;
   SpatialHash::Collected around_;
 };
 

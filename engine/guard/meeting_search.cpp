@@ -208,7 +208,7 @@ void MeetingSearch::search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) cons
     marked = marked || mesh.marked(mesh.rings.slot(v, k));
     moved = moved || mesh.moved(mesh.rings.slot(v, k));
   }
-  if (!marked || !moved || star_is_plain(mesh.rings, mesh.positions, v)) return;
+  if (!marked || !moved || star_is_embedded(mesh.rings, mesh.positions, v)) return;
   const auto corners = [&](uint32_t k) {
     return std::array<uint32_t, 3>{v, mesh.rings.slot(v, k),
                                    mesh.rings.slot(v, k + 1 == count ? 0 : k + 1)};
@@ -290,8 +290,8 @@ void MeetingSearch::search_leaves(const Mesh& mesh, uint32_t node, Scratch& scra
 }
 
 const Vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t slots,
-                                            const Packed* positions, const uint8_t* marked,
-                                            const Executor& executor, const Packed* before) {
+                                            const Float4* positions, const uint8_t* marked,
+                                            const Executor& executor, const Float4* before) {
   const Mesh mesh{rings, slots, positions, marked, before};
   pairs_.clear();
   list_vertices(mesh);

@@ -41,9 +41,9 @@ class MeetingSearch {
   // faces that meet elsewhere than in what they share (triangle_intersection.h: exact, faces of
   // zero area left out), both have a marked vertex, and one has a vertex that has moved; sorted,
   // until the next call. The same for any executor. The mesh is closed and a manifold.
-  const Vector<FacePair>& find(const RingView& rings, uint32_t slots, const Packed* positions,
+  const Vector<FacePair>& find(const RingView& rings, uint32_t slots, const Float4* positions,
                                const uint8_t* marked, const Executor& executor,
-                               const Packed* before = nullptr);
+                               const Float4* before = nullptr);
 
   // The faces of the last call; none where nothing was marked.
   size_t face_count() const { return face_count_; }
@@ -59,9 +59,9 @@ class MeetingSearch {
   struct Mesh {
     RingView rings;
     uint32_t slots;
-    const Packed* positions;
+    const Float4* positions;
     const uint8_t* marks;
-    const Packed* before;
+    const Float4* before;
     bool marked(uint32_t v) const { return marks == nullptr || marks[v] != 0; }
     bool marked(const uint32_t* abc) const {
       return marked(abc[0]) || marked(abc[1]) || marked(abc[2]);

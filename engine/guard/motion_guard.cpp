@@ -18,7 +18,7 @@ void MotionGuard::find_folds(const Vector<uint32_t>& blocks) {
   const Streams3& n = mesh_.normal;
   run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {
     const Blocks part = Blocks::of(blocks.data(), blocks.size(), begin, end);
-    kernels::turned_faces(simd_, mesh_.rings(), mesh_.packed.data(), part, n.x.data(), n.y.data(),
+    kernels::turned_faces(simd_, mesh_.rings(), mesh_.position.data(), part, n.x.data(), n.y.data(),
                           n.z.data(), kRiskDot, folds_.data());
     for (size_t i = 0; i < part.count; ++i) {
       for (uint32_t v = part.begin(i); v < part.begin(i) + kRingLanes; ++v) {
@@ -34,12 +34,12 @@ void MotionGuard::assess(const Vector<uint32_t>& due, const Vector<uint32_t>& at
   for (const uint32_t v : at_risk) mesh_.risk[v] |= Mesh::kNearRisk;
 }
 
-int64_t MotionGuard::take_back(const Buffer<Packed>& before, SpatialHash& hash,
+int64_t MotionGuard::take_back(const Buffer<Float4>& before, SpatialHash& hash,
                                Vector<uint32_t>& back) {
   int64_t taken_back = 0;
   for (int64_t now = 1; now != 0; taken_back += now) {
     now = 0;
-    const auto& pairs = search_.find(mesh_.rings(), mesh_.slots(), mesh_.packed.data(),
+    const auto& pairs = search_.find(mesh_.rings(), mesh_.slots(), mesh_.position.data(),
                                      mesh_.risk.data(), executor_, before.data());
     for (const auto& [f, g] : pairs) {
       now += put_back(search_.face(f), before, hash, back) +
@@ -50,13 +50,13 @@ int64_t MotionGuard::take_back(const Buffer<Packed>& before, SpatialHash& hash,
 }
 
 // Returns how many of the face's vertices were not where they had been.
-int64_t MotionGuard::put_back(const uint32_t* face, const Buffer<Packed>& before, SpatialHash& hash,
+int64_t MotionGuard::put_back(const uint32_t* face, const Buffer<Float4>& before, SpatialHash& hash,
                               Vector<uint32_t>& back) {
   int64_t count = 0;
   for (int i = 0; i < 3; ++i) {
     const uint32_t v = face[i];
-    const Packed& b = before[v];
-    const Packed& p = mesh_.packed[v];
+    const Float4& b = before[v];
+    const Float4& p = mesh_.position[v];
     mesh_.velocity.set(v, {});
     if (b.x == p.x && b.y == p.y && b.z == p.z) continue;
     mesh_.place(v, {b.x, b.y, b.z});

@@ -28,10 +28,10 @@ class MotionGuard {
   void assess(const Vector<uint32_t>& due, const Vector<uint32_t>& at_risk);
   // `before`: the positions before the movement, by id. The hash learns of the vertices that go
   // back, which are appended to `back`. Returns how many went back.
-  int64_t take_back(const Buffer<Packed>& before, SpatialHash& hash, Vector<uint32_t>& back);
+  int64_t take_back(const Buffer<Float4>& before, SpatialHash& hash, Vector<uint32_t>& back);
 
  private:
-  int64_t put_back(const uint32_t* face, const Buffer<Packed>& before, SpatialHash& hash,
+  int64_t put_back(const uint32_t* face, const Buffer<Float4>& before, SpatialHash& hash,
                    Vector<uint32_t>& back);
 
   Mesh& mesh_;

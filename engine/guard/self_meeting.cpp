@@ -12,7 +12,7 @@ Vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Executor& 
   MeetingSearch search(simd);
   Vector<uint32_t> faces;
   for (const auto& [f, g] :
-       search.find(mesh.rings(), mesh.slots(), mesh.packed.data(), nullptr, executor)) {
+       search.find(mesh.rings(), mesh.slots(), mesh.position.data(), nullptr, executor)) {
     faces.push_back(f);
     faces.push_back(g);
   }

@@ -80,7 +80,7 @@ Neighbors Mesh::ring(uint32_t v) const {
 
 void Mesh::place(uint32_t v, Vec3 p) {
   assert(v < slots_);
-  packed[v] = {p.x, p.y, p.z, 0};
+  position[v] = {p.x, p.y, p.z, 0};
   calm[v] = 0;
 }
 

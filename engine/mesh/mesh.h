@@ -43,7 +43,7 @@ struct Streams3 {
 // All streams are 64-byte aligned and padded to whole blocks of kRingLanes vertices.
 //
 //   stream         bytes  unit          written by
-//   packed         16     mesh units    position: move, transformations; a record, as it is fetched
+//   position       16     mesh units    move, transformations; a record of four, as it is fetched
 //                                       by neighbour index
 //   velocity       12     per time      move, transformations
 //   normal         12     1             normals
@@ -51,7 +51,7 @@ struct Streams3 {
 //   path           4      mesh units    move; reset when the constraints of v are checked
 //   idle           1      iterations    since the constraints of v were checked
 //   calm           1      iterations    sleep.h: for how long v has been calm, up to 255
-//   stir           1      1/256 of      sleep.h: movement along the normal since v last woke its
+//   drift          1      1/256 of      sleep.h: movement along the normal since v last woke its
 //                         kWakeMove     neighbours
 //   risk           1      flags         motion guard: the surface is near or folded here (risk.h)
 //   operations     1      count         resolution, in this iteration
@@ -69,10 +69,10 @@ class Mesh {
   Mesh& operator=(Mesh&&) = default;
 
   Streams3 velocity, normal, displacement;
-  Buffer<Packed> packed;
+  Buffer<Float4> position;
   Buffer<float> path;
   Buffer<uint8_t> idle;
-  Buffer<uint8_t> calm, stir;
+  Buffer<uint8_t> calm, drift;
   Buffer<uint8_t> risk;
   Buffer<uint8_t> operations;
   Buffer<uint8_t> turns;
@@ -106,7 +106,7 @@ class Mesh {
   Neighbors ring(uint32_t v) const;
   Vec3 at(uint32_t v) const {
     assert(v < slots_);
-    return {packed[v].x, packed[v].y, packed[v].z};
+    return {position[v].x, position[v].y, position[v].z};
   }
 
   void place(uint32_t v, Vec3 p);
@@ -200,11 +200,11 @@ void Mesh::visit_streams(A& a, B& b, const Visit& visit) {
   visit3(a.velocity, b.velocity);
   visit3(a.normal, b.normal);
   visit3(a.displacement, b.displacement);
-  visit(a.packed, b.packed);
+  visit(a.position, b.position);
   visit(a.path, b.path);
   visit(a.idle, b.idle);
   visit(a.calm, b.calm);
-  visit(a.stir, b.stir);
+  visit(a.drift, b.drift);
   visit(a.risk, b.risk);
   visit(a.operations, b.operations);
   visit(a.turns, b.turns);

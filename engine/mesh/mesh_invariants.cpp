@@ -42,7 +42,7 @@ std::string broken_invariant(const Mesh& mesh) {
     if (!mesh.alive(v)) continue;
     ++living;
     if (std::string broken = broken_ring(mesh, v); !broken.empty()) return broken;
-    const Packed& p = mesh.packed[v];
+    const Float4& p = mesh.position[v];
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
       return at_vertex(v, "its position is not finite");
     }

@@ -23,8 +23,8 @@ bool within_reach(const Streams3& s) {
   return within_reach(s.x) && within_reach(s.y) && within_reach(s.z);
 }
 
-bool within_reach(const Buffer<Packed>& b) {
-  return std::all_of(b.begin(), b.end(), [](const Packed& p) {
+bool within_reach(const Buffer<Float4>& b) {
+  return std::all_of(b.begin(), b.end(), [](const Float4& p) {
     return within_reach(p.x) && within_reach(p.y) && within_reach(p.z) && p.w == 0;
   });
 }
@@ -61,7 +61,7 @@ bool Mesh::restore(StateReader& from) {
     from.read_all(stream);
     from.demand(stream.size() == n);
   });
-  return restore_rings(from) && within_reach(packed) && within_reach(velocity) &&
+  return restore_rings(from) && within_reach(position) && within_reach(velocity) &&
          within_reach(normal) && within_reach(displacement) && within_reach(path) &&
          broken_invariant(*this).empty();
 }

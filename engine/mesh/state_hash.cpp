@@ -6,7 +6,7 @@ uint64_t state_hash(const Mesh& mesh) {
   Fnv hash;
   hash.add(static_cast<uint64_t>(mesh.vertex_count()));
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
-    const Packed& p = mesh.packed[v];
+    const Float4& p = mesh.position[v];
     for (const float c : {p.x, p.y, p.z}) hash.add(c);
   }
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
@@ -27,9 +27,9 @@ PartHash part_hash(std::string_view part, const Streams3& streams) {
   return {part, hash.value()};
 }
 
-PartHash part_hash(std::string_view part, const Buffer<Packed>& records) {
+PartHash part_hash(std::string_view part, const Buffer<Float4>& records) {
   Fnv hash;
-  for (const Packed& r : records) {
+  for (const Float4& r : records) {
     for (const float c : {r.x, r.y, r.z, r.w}) hash.add(c);
   }
   return {part, hash.value()};
@@ -49,14 +49,14 @@ std::vector<PartHash> part_hashes(const Mesh& mesh) {
   return {{"counts and delta", counts.value()},
           {"rings", rings.value()},
           part_hash("free ids", mesh.free_ids()),
-          part_hash("position", mesh.packed),
+          part_hash("position", mesh.position),
           part_hash("velocity", mesh.velocity),
           part_hash("normal", mesh.normal),
           part_hash("displacement", mesh.displacement),
           part_hash("path", mesh.path),
           part_hash("idle", mesh.idle),
           part_hash("calm", mesh.calm),
-          part_hash("stir", mesh.stir),
+          part_hash("drift", mesh.drift),
           part_hash("risk", mesh.risk),
           part_hash("operations", mesh.operations),
           part_hash("turns", mesh.turns),

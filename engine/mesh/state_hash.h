@@ -21,7 +21,7 @@ struct PartHash {
   friend bool operator==(const PartHash&, const PartHash&) = default;
 };
 PartHash part_hash(std::string_view part, const Streams3& streams);
-PartHash part_hash(std::string_view part, const Buffer<Packed>& records);
+PartHash part_hash(std::string_view part, const Buffer<Float4>& records);
 template <typename Range>
 PartHash part_hash(std::string_view part, const Range& values) {
   Fnv hash;

@@ -66,9 +66,9 @@ void Dynamics::resize(const Guide& guide) {
   laplacian_.reserve(room);
   laplacian_.resize(n);
   // As many as the mesh has: they are swapped.
-  for (Buffer<Packed>& b : stage_) {
+  for (Buffer<Float4>& b : stage_) {
     b.reserve(room);
-    b.resize(mesh_.packed.size());
+    b.resize(mesh_.position.size());
   }
   if (!only_surface_forces(guide)) force_.resize(n);
   if (!stretched(guide.metric)) return;
@@ -85,11 +85,12 @@ void Dynamics::choose_blocks(const Sleep* sleep) {
     blocks_ = sleep->awake();
     const Blocks fallen{sleep->fallen().data(), sleep->fallen().size()};
     split_runs(fallen, [&](uint32_t begin, uint32_t end) {
-      for (Buffer<Packed>& stage : stage_) {
-        std::copy(mesh_.packed.begin() + begin, mesh_.packed.begin() + end, stage.begin() + begin);
+      for (Buffer<Float4>& stage : stage_) {
+        std::copy(mesh_.position.begin() + begin, mesh_.position.begin() + end,
+                  stage.begin() + begin);
       }
     });
-    kernels::laplacian(simd_, mesh_.rings(), mesh_.packed.data(), fallen, laplacian_.data());
+    kernels::laplacian(simd_, mesh_.rings(), mesh_.position.data(), fallen, laplacian_.data());
   }
   movement_.assign(tasks(), {});
 }
@@ -123,17 +124,20 @@ bool Dynamics::moves_at_once(const Guide& guide) const {
          (guide.user == nullptr || guide.user->pins.empty());
 }
 
-Status Dynamics::step(const Guide& guide, Seconds& seconds, const Sleep* sleep,
-                      const PassEnd& after) {
+Status Dynamics::step(const Guide& guide, Seconds& seconds) {
+  std::vector<Pass> table;
+  append_passes(guide, nullptr, seconds, table);
+  return schedule_.run_passes(table, in_order(guide));
+}
+
+bool Dynamics::in_order(const Guide& guide) const {
+  return (guide.user != nullptr && guide.user->force) || mesh_.padded() <= kGrain;
+}
+
+void Dynamics::begin_step(const Guide& guide, const Sleep* sleep) {
   resize(guide);
   choose_blocks(sleep);
-  const bool user_force = guide.user != nullptr && guide.user->force;
   time_step_ = stable_time_step(model_, guide.user == nullptr ? 0 : guide.user->stiffness());
-  status_ = {};
-  // In order, the user's force is called on the calling thread.
-  schedule_.run_passes(passes(guide, seconds), user_force || tasks() <= 1, after);
-  if (status_.ok()) end_step();
-  return status_;
 }
 
 void Dynamics::save(StateWriter& to) const {
@@ -146,11 +150,13 @@ void Dynamics::restore(StateReader& from) {
   from.read(energy_);
   from.read(speed_of_fastest_);
   from.read_all(laplacian_);
-  for (Buffer<Packed>& b : stage_) b = mesh_.packed;
+  for (Buffer<Float4>& b : stage_) b = mesh_.position;
 }
 
-std::vector<Pass> Dynamics::passes(const Guide& guide, Seconds& seconds) {
-  std::vector<Pass> table;
+void Dynamics::append_passes(const Guide& guide, const Sleep* sleep, Seconds& seconds,
+                             std::vector<Pass>& table) {
+  table.push_back({"begin", kAwake | kRings | kPositions, kStages | kLaplacians, &seconds.dynamics,
+                   [this, guide, sleep] { begin_step(guide, sleep); }});
   table.push_back({"normals", kRings | kPositions, kNormals | kLaplacians, &seconds.normals,
                    [this, guide] { normals(guide); }});
   if (model_.spring > 0) {
@@ -158,15 +164,18 @@ std::vector<Pass> Dynamics::passes(const Guide& guide, Seconds& seconds) {
                      [this, guide] { measure_rest_length(guide); }});
   }
   for (int stage = 0; stage < 4; ++stage) add_stage(stage, guide, seconds, table);
-  if (moves_at_once(guide)) return table;
-  table.push_back({"bound", kRings | kPositions | kNormals | kRestLength,
-                   kDisplacements | kStages | kLaplacians, &seconds.dynamics, [this, guide] {
-                     if (model_.bound == Bound::kScale) scale_time_step(guide);
-                     if (guide.user != nullptr && !guide.user->pins.empty()) hold_pinned(guide);
-                   }});
-  table.push_back({"move", kDisplacements | kNormals, kPositions | kVelocities | kEnergy,
-                   &seconds.dynamics, [this] { move(); }});
-  return table;
+  if (!moves_at_once(guide)) {
+    table.push_back({"bound", kRings | kPositions | kNormals | kRestLength,
+                     kDisplacements | kStages | kLaplacians, &seconds.dynamics, [this, guide] {
+                       Status s;
+                       if (model_.bound == Bound::kScale) s = scale_time_step(guide);
+                       if (guide.user != nullptr && !guide.user->pins.empty()) hold_pinned(guide);
+                       return s;
+                     }});
+    table.push_back({"move", kDisplacements | kNormals | kStages,
+                     kStages | kPositions | kVelocities | kDue | kEnergy, &seconds.dynamics,
+                     [this] { move(); }});
+  }
 }
 
 void Dynamics::add_stage(int stage, const Guide& guide, Seconds& seconds,
@@ -178,13 +187,13 @@ void Dynamics::add_stage(int stage, const Guide& guide, Seconds& seconds,
   }
   if (guide.user != nullptr && guide.user->force) {
     table.push_back({numbered("user force "), kRings | kPositions | kNormals | kStages, kUserForce,
-                     &seconds.dynamics, [this, stage, guide] { user_force(stage, guide); }});
+                     &seconds.dynamics, [this, stage, guide] { return user_force(stage, guide); }});
   }
   constexpr uint32_t kRead =
       kRings | kPositions | kVelocities | kNormals | kRestLength | kLaplacians | kUserForce;
   if (stage == 3 && moves_at_once(guide)) {
     table.push_back({"stage 4 and move", kRead,
-                     kStages | kDisplacements | kPositions | kVelocities | kEnergy,
+                     kStages | kDisplacements | kPositions | kVelocities | kDue | kEnergy,
                      &seconds.dynamics, [this, guide] { last_stage_and_move(guide); }});
     return;
   }
@@ -195,7 +204,7 @@ void Dynamics::add_stage(int stage, const Guide& guide, Seconds& seconds,
 // With the Laplacians of the first stage, which walk the same rings.
 void Dynamics::normals(const Guide& guide) {
   const kernels::Float3s n = raw(mesh_.normal);
-  const Packed* position = mesh_.packed.data();
+  const Float4* position = mesh_.position.data();
   for_tasks([&](size_t, const Blocks& blocks) {
     if (model_.curvature > 0) {
       kernels::normals_and_laplacian(simd_, mesh_.rings(), position, blocks, n.x, n.y, n.z,
@@ -213,12 +222,12 @@ void Dynamics::normals(const Guide& guide) {
   });
 }
 
-void Dynamics::user_force(int stage, const Guide& guide) {
+Status Dynamics::user_force(int stage, const Guide& guide) {
   user_force_.resize(mesh_.padded());
   for (Buffer<float>* f : {&user_force_.x, &user_force_.y, &user_force_.z}) {
     std::fill(f->begin(), f->end(), 0.0F);
   }
-  if (status_.ok()) status_ = guide.user->force(mesh_, stage_position(stage), user_force_);
+  return guide.user->force(mesh_, stage_position(stage), user_force_);
 }
 
 void Dynamics::laplacians(int stage) {
@@ -247,11 +256,12 @@ void Dynamics::last_stage_and_move(const Guide& guide) {
     movement_[index] = kernels::guided_move(simd_, coefficients(), surface_forces(3, guide),
                                             streams(3), move_bound(), move_streams(), blocks);
   });
+  end_step();
 }
 
 // The position of stage s: that of the mesh, then what stage s - 1 wrote.
-const Packed* Dynamics::stage_position(int stage) const {
-  return stage == 0 ? mesh_.packed.data() : stage_[stage % 2].data();
+const Float4* Dynamics::stage_position(int stage) const {
+  return stage == 0 ? mesh_.position.data() : stage_[stage % 2].data();
 }
 
 void Dynamics::gather_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end) {
@@ -302,9 +312,12 @@ kernels::Rk4Coefficients Dynamics::coefficients() const {
 }
 
 kernels::Rk4Streams Dynamics::streams(int stage) {
-  return {mesh_.packed.data(), raw(std::as_const(mesh_.velocity)),
-          raw(speed_),         raw(mesh_.displacement),
-          raw(rate_),          stage_[(stage + 1) % 2].data()};
+  return {mesh_.position.data(),
+          raw(std::as_const(mesh_.velocity)),
+          raw(speed_),
+          raw(mesh_.displacement),
+          raw(rate_),
+          stage_[(stage + 1) % 2].data()};
 }
 
 kernels::SurfaceForces Dynamics::surface_forces(int stage, const Guide& guide) const {
@@ -320,9 +333,9 @@ kernels::SurfaceForces Dynamics::surface_forces(int stage, const Guide& guide) c
 
 // The last stage reads its positions from the other buffer.
 kernels::MoveStreams Dynamics::move_streams() {
-  return {mesh_.packed.data(), stage_[0].data(),
-          raw(mesh_.velocity), raw(std::as_const(mesh_.normal)),
-          mesh_.path.data(),   mesh_.turns.data()};
+  return {mesh_.position.data(), stage_[0].data(),
+          raw(mesh_.velocity),   raw(std::as_const(mesh_.normal)),
+          mesh_.path.data(),     mesh_.turns.data()};
 }
 
 kernels::MoveBound Dynamics::move_bound() const {
@@ -341,7 +354,7 @@ void Dynamics::measure_rest_length(const Guide& guide) {
   Vector<double> part(block_count(mesh_.padded(), kGrain));
   run_blocks(schedule_, mesh_.padded(), kGrain, [&](size_t index, size_t begin, size_t end) {
     part[index] =
-        kernels::edge_length_sum(simd_, mesh_.rings(), mesh_.packed.data(), guide.metric,
+        kernels::edge_length_sum(simd_, mesh_.rings(), mesh_.position.data(), guide.metric,
                                  static_cast<uint32_t>(begin), static_cast<uint32_t>(end));
   });
   const double sum = std::accumulate(part.begin(), part.end(), 0.0);
@@ -362,19 +375,22 @@ float Dynamics::longest_move() const {
 
 // Second method of 3.6: the displacement is about linear in the time step, so again with a shorter
 // one until the fastest vertex is within the bound; what is left is clamped.
-void Dynamics::scale_time_step(const Guide& guide) {
+Status Dynamics::scale_time_step(const Guide& guide) {
   constexpr int kTries = 8;
   const float longest = move_bound().length;
   for (int i = 0; i < kTries; ++i) {
     const float moved = longest_move();
-    if (moved <= longest) return;
+    if (moved <= longest) break;
     time_step_ = time_step_ * (longest / moved) * 0.95F;
     for (int stage = 0; stage < 4; ++stage) {
       if (model_.curvature > 0) laplacians(stage);
-      if (guide.user != nullptr && guide.user->force) user_force(stage, guide);
+      if (guide.user != nullptr && guide.user->force) {
+        if (Status s = user_force(stage, guide); !s.ok()) return s;
+      }
       run_stage(stage, guide);
     }
   }
+  return {};
 }
 
 void Dynamics::hold_pinned(const Guide& guide) {
@@ -388,16 +404,16 @@ void Dynamics::hold_pinned(const Guide& guide) {
 }
 
 void Dynamics::move() {
-  if (!status_.ok()) return;
   for_tasks([&](size_t index, const Blocks& blocks) {
     movement_[index] = kernels::move(simd_, move_bound(), raw(mesh_.displacement),
                                      raw(std::as_const(rate_)), move_streams(), blocks);
   });
+  end_step();
 }
 
 // The positions are what was moved to, and the energy what was measured on the way.
 void Dynamics::end_step() {
-  mesh_.packed.swap(stage_[0]);
+  mesh_.position.swap(stage_[0]);
   double sum = 0;
   float longest2 = 0;
   for (const kernels::Movement& m : movement_) {

@@ -58,17 +58,21 @@ class Dynamics {
  public:
   Dynamics(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model);
 
-  // Moves every vertex that does not sleep once (no sleep: all); displacement, velocity, normal and
-  // path of the mesh are written. Fails where the user's force does; positions, velocities and
-  // paths are then as they were. `after`: as in Schedule::run_passes.
-  Status step(const Guide& guide, Seconds& seconds, const Sleep* sleep = nullptr,
-              const PassEnd& after = {});
+  // Moves every vertex once; displacement, velocity, normal and path of the mesh are written. Fails
+  // where the user's force does; positions, velocities and paths are then as they were.
+  Status step(const Guide& guide, Seconds& seconds);
+  // The passes of a step, in which those that sleep do not take part; sleep may be null. What they
+  // are made of outlives them.
+  void append_passes(const Guide& guide, const Sleep* sleep, Seconds& seconds,
+                     std::vector<Pass>& table);
+  // Whether passes are to run in order, on the calling thread: so the user's force is called.
+  bool in_order(const Guide& guide) const;
   // Mean of m (dx . n / (delta dt))^2 / 2 over the vertices, of the last step.
   double energy() const { return energy_; }
   // The longest movement of the last step, in delta per time.
   double speed() const { return speed_of_fastest_; }
   // Positions before the last step.
-  const Buffer<Packed>& before() const { return stage_[0]; }
+  const Buffer<Float4>& before() const { return stage_[0]; }
   // What the next step reads beside the mesh: the Laplacians of blocks that sleep, of when they
   // fell asleep; and energy and speed.
   void save(StateWriter& to) const;
@@ -77,13 +81,13 @@ class Dynamics {
   void append_hashes(std::vector<PartHash>& hashes) const;
 
  private:
+  void begin_step(const Guide& guide, const Sleep* sleep);
   void resize(const Guide& guide);
   void choose_blocks(const Sleep* sleep);
-  std::vector<Pass> passes(const Guide& guide, Seconds& seconds);
   void add_stage(int stage, const Guide& guide, Seconds& seconds, std::vector<Pass>& table);
   void normals(const Guide& guide);
   void laplacians(int stage);
-  void user_force(int stage, const Guide& guide);
+  Status user_force(int stage, const Guide& guide);
   void measure_rest_length(const Guide& guide);
   // A stage: the forces, and the update under them.
   void run_stage(int stage, const Guide& guide);
@@ -91,7 +95,7 @@ class Dynamics {
   void image_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end);
   // From the last stage to the end of the step: where nothing lies between them in one pass.
   void last_stage_and_move(const Guide& guide);
-  void scale_time_step(const Guide& guide);
+  Status scale_time_step(const Guide& guide);
   void hold_pinned(const Guide& guide);
   void move();
   void end_step();
@@ -107,7 +111,7 @@ class Dynamics {
   kernels::MoveStreams move_streams();
   kernels::MoveBound move_bound() const;
   const Streams3& image_normal(const Guide& guide) const;
-  const Packed* stage_position(int stage) const;
+  const Float4* stage_position(int stage) const;
 
   // The blocks that take part in this step, in tasks of kGrain vertices; every pass goes over them.
   size_t tasks() const;
@@ -125,14 +129,13 @@ class Dynamics {
   float rest_length_ = 0;
   double energy_ = 0;
   double speed_of_fastest_ = 0;
-  Status status_;
   Vector<uint32_t> blocks_;             // ascending
   Vector<kernels::Movement> movement_;  // by task
   Streams3 force_, speed_, rate_;
   Streams3 metric_normal_, metric_step_;
   Streams3 user_force_;
-  Buffer<Packed> stage_[2];
-  Buffer<Packed> laplacian_;
+  Buffer<Float4> stage_[2];
+  Buffer<Float4> laplacian_;
 };
 
 }  // namespace plc

@@ -19,29 +19,29 @@ constexpr size_t kTaskCalm = 512;  // blocks
 bool all_calm(const Mesh& mesh, uint32_t block) {
   const uint8_t* calm = mesh.calm.data() + size_t{block} * kRingLanes;
   // Without a minimum, which GCC 12 looks for one by one.
-  uint8_t stirred[kRingLanes];
-  for (uint32_t lane = 0; lane < kRingLanes; ++lane) stirred[lane] = calm[lane] < kCalmPeriod;
+  uint8_t restless[kRingLanes];
+  for (uint32_t lane = 0; lane < kRingLanes; ++lane) restless[lane] = calm[lane] < kCalmPeriod;
   uint64_t halves[2];
-  static_assert(sizeof halves == sizeof stirred);
-  std::memcpy(halves, stirred, sizeof halves);
+  static_assert(sizeof halves == sizeof restless);
+  std::memcpy(halves, restless, sizeof halves);
   return (halves[0] | halves[1]) == 0;
 }
 
 struct Limits {
   float along;          // of calm vertices: less than this along the normal
   float slide_squared;  // ... and in all
-  float steps;          // of stir, per mesh unit
+  float steps;          // of drift, per mesh unit
   float turn;           // more than this along the normal, to the other side, is a turn
 };
 
-// Brings calm, stir and turns of a block's vertices up to date. Returns those that wake their
+// Brings calm, drift and turns of a block's vertices up to date. Returns those that wake their
 // neighbours, as bits. Loops over whole blocks without branches, which compilers make vector code
 // of.
 uint32_t observe_block(Mesh& mesh, uint32_t first, const Limits& limits) {
   const Streams3 &move = mesh.displacement, &normal = mesh.normal;
   const float *dx = &move.x[first], *dy = &move.y[first], *dz = &move.z[first];
   const float *nx = &normal.x[first], *ny = &normal.y[first], *nz = &normal.z[first];
-  int32_t calm[kRingLanes], stir[kRingLanes];
+  int32_t calm[kRingLanes], drift[kRingLanes];
   uint32_t side[kRingLanes];
   for (uint32_t k = 0; k < kRingLanes; ++k) {
     const float outwards = dx[k] * nx[k] + dy[k] * ny[k] + dz[k] * nz[k];
@@ -52,24 +52,24 @@ uint32_t observe_block(Mesh& mesh, uint32_t first, const Limits& limits) {
     calm[k] = static_cast<int32_t>(along < limits.along) &
               static_cast<int32_t>(squared < limits.slide_squared);
     // Whole steps only: what moves less than one in an iteration wakes nobody.
-    stir[k] = static_cast<int32_t>(std::min(along * limits.steps, 256.0F));
+    drift[k] = static_cast<int32_t>(std::min(along * limits.steps, 256.0F));
   }
   uint8_t* const turns = &mesh.turns[first];
   for (uint32_t k = 0; k < kRingLanes; ++k) turns[k] = moved_to_side(turns[k], side[k]);
   uint8_t* const calm_for = &mesh.calm[first];
-  uint8_t* const stirred = &mesh.stir[first];
+  uint8_t* const drifted = &mesh.drift[first];
   int32_t most = 0;
   for (uint32_t k = 0; k < kRingLanes; ++k) {
     calm_for[k] = static_cast<uint8_t>(calm[k] * std::min(calm_for[k] + 1, 255));
-    stir[k] += stirred[k];
-    most = std::max(most, stir[k]);
+    drift[k] += drifted[k];
+    most = std::max(most, drift[k]);
   }
   uint32_t wakers = 0;
   for (uint32_t k = 0; k < kRingLanes; ++k) {
-    stirred[k] = stir[k] >= 256 ? uint8_t{0} : static_cast<uint8_t>(stir[k]);
+    drifted[k] = drift[k] >= 256 ? uint8_t{0} : static_cast<uint8_t>(drift[k]);
   }
   if (most < 256) return 0;
-  for (uint32_t k = 0; k < kRingLanes; ++k) wakers |= static_cast<uint32_t>(stir[k] >= 256) << k;
+  for (uint32_t k = 0; k < kRingLanes; ++k) wakers |= static_cast<uint32_t>(drift[k] >= 256) << k;
   return wakers;
 }
 
@@ -154,9 +154,9 @@ void Sleep::observe() {
     wakers.clear();
     for (size_t i = begin; i < end; ++i) {
       const uint32_t first = awake_[i] * kRingLanes;
-      uint32_t stirred = observe_block(mesh_, first, limits);
-      for (; stirred != 0; stirred &= stirred - 1) {
-        wakers.push_back(first + static_cast<uint32_t>(__builtin_ctz(stirred)));
+      uint32_t waking = observe_block(mesh_, first, limits);
+      for (; waking != 0; waking &= waking - 1) {
+        wakers.push_back(first + static_cast<uint32_t>(__builtin_ctz(waking)));
       }
     }
   });

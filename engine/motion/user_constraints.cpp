@@ -17,12 +17,12 @@ float squared_millimetres(const UserConstraints& user, Vec3 a) {
 
 // The attachments that reach into the box of the vertices begin .. end-1: these are near each other
 // in space, as ids follow a space-filling curve.
-std::vector<Attachment> reaching(const UserConstraints& user, const Packed* position,
+std::vector<Attachment> reaching(const UserConstraints& user, const Float4* position,
                                  uint32_t begin, uint32_t end) {
   Vec3 low{position[begin].x, position[begin].y, position[begin].z};
   Vec3 high = low;
   for (uint32_t v = begin; v < end; ++v) {
-    const Packed& p = position[v];
+    const Float4& p = position[v];
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
@@ -48,7 +48,7 @@ float UserConstraints::stiffness() const {
   return most;
 }
 
-void attach(const UserConstraints& user, const Motion& motion, const Packed* position,
+void attach(const UserConstraints& user, const Motion& motion, const Float4* position,
             const Streams3& normal, uint32_t begin, uint32_t end, Streams3& force) {
   if (begin == end) return;
   const std::vector<Attachment> near = reaching(user, position, begin, end);

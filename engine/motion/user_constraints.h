@@ -26,7 +26,7 @@ struct Pin {
 
 // Adds a force to that of every living vertex: mass times mesh units per time squared. Called on
 // the calling thread. An error ends the evolution.
-using UserForce = std::function<Status(const Mesh& mesh, const Packed* position, Streams3& force)>;
+using UserForce = std::function<Status(const Mesh& mesh, const Float4* position, Streams3& force)>;
 
 // On one level.
 struct UserConstraints {
@@ -54,7 +54,7 @@ struct Motion {
 // critically together with gamma. With gamma alone strengths of 4 and more did not come to rest in
 // 500 iterations: neighbours swing, as the normal of each follows the others. With this 4 takes 49
 // and 20 takes 91.
-void attach(const UserConstraints& user, const Motion& motion, const Packed* position,
+void attach(const UserConstraints& user, const Motion& motion, const Float4* position,
             const Streams3& normal, uint32_t begin, uint32_t end, Streams3& force);
 
 // Whether p lies in one of the pins.

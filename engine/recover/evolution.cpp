@@ -25,56 +25,78 @@ Evolution::Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, cons
       slow_vertices_(options.slow_vertices),
       sleep_(mesh, schedule, options.speeds),
       dynamics_(mesh, schedule, simd, model),
+      detection_(mesh, schedule, simd),
       guard_(mesh, schedule, simd),
-      resolution_(mesh, schedule, simd) {}
+      resolution_(mesh, schedule, simd, detection_) {}
 
 void Evolution::restart() {
+  detection_.restart();
   resolution_.restart();
   sleep_.restart();
 }
 
 Status Evolution::iterate(const Guide& guide, Seconds& seconds, OperationCounts& counts) {
   const double start = now();
-  // The user's force may change at any time.
-  sleep_.choose(guide.user != nullptr && guide.user->force);
-  passed("sleep");
+  std::vector<Pass> table;
+  append_movement(guide, seconds, table);
+  append_topology(seconds, counts, table);
   PassEnd after;
-  if (observer_) after = [this](const std::string& names) { passed(names); };
-  if (Status s = dynamics_.step(guide, seconds, &sleep_, after); !s.ok()) return s;
-  passed("energy");
-  sleep_.observe();
-  passed("calm");
-  const double moved = now();
-  const auto& due =
-      slow_vertices_ ? resolution_.take_due(sleep_.awake()) : resolution_.take_due(true);
-  passed("due, hash, surroundings");
-  counts.moves += static_cast<int64_t>(awake());
-  counts.checks += static_cast<int64_t>(due.size());
-  guard_.find_folds(sleep_.awake_and_rim());
-  guard_.assess(due, resolution_.surroundings().at_risk());
-  passed("risk");
-  back_.clear();
-  counts.reverted += guard_.take_back(dynamics_.before(), resolution_.hash(), back_);
-  passed("motion guard");
-  resolution_.add_due(back_);
-  resolution_.run(++iteration_, counts);
-  passed("resolution");
+  if (observer_) after = [this](const std::string& names) { notify(names); };
+  Status s = schedule_.run_passes(table, dynamics_.in_order(guide), after);
+  if (!s.ok()) return s;
   assert(sound(mesh_, schedule_));
-  const double end = now();
-  seconds.topology += end - moved;
-  seconds.total += end - start;
+  seconds.total += now() - start;
   return {};
+}
+
+void Evolution::append_movement(const Guide& guide, Seconds& seconds, std::vector<Pass>& table) {
+  // The user's force may change at any time.
+  const bool all = guide.user != nullptr && guide.user->force;
+  table.push_back({"sleep", kCalm, kAwake | kVelocities | kDisplacements, &seconds.dynamics,
+                   [this, all] { sleep_.choose(all); }});
+  dynamics_.append_passes(guide, &sleep_, seconds, table);
+  table.push_back({"calm", kAwake | kRings | kNormals | kDisplacements, kCalm, &seconds.dynamics,
+                   [this] { sleep_.observe(); }});
+}
+
+void Evolution::append_topology(Seconds& seconds, OperationCounts& counts,
+                                std::vector<Pass>& table) {
+  const auto add = [&](const char* name, uint32_t reads, uint32_t writes, const auto& body) {
+    table.push_back({name, reads, writes, &seconds.topology, body});
+  };
+  constexpr uint32_t kSurface = kRings | kPositions | kNormals;
+  add("due", kAwake | kCalm, kDue, [this, &counts] {
+    if (slow_vertices_) {
+      detection_.list_due(sleep_.awake());
+    } else {
+      detection_.list_all();
+    }
+    counts.moves += static_cast<int64_t>(awake());
+    counts.checks += static_cast<int64_t>(detection_.due().size());
+  });
+  add("hash", kDue | kPositions, kHash, [this] { detection_.update_hash(); });
+  add("surroundings", kDue | kHash | kSurface, kSurroundings, [this] { detection_.search(); });
+  add("folds", kAwake | kSurface, kFolds, [this] { guard_.find_folds(sleep_.awake_and_rim()); });
+  add("risk", kDue | kSurroundings | kFolds, kRisk,
+      [this] { guard_.assess(detection_.due(), detection_.surroundings().at_risk()); });
+  add("motion guard", kRisk | kStages | kSurface,
+      kPositions | kVelocities | kDue | kCalm | kHash | kTakenBack, [this, &counts] {
+        back_.clear();
+        counts.reverted += guard_.take_back(dynamics_.before(), detection_.hash(), back_);
+      });
+  add("resolution", kEverything, kEverything,
+      [this, &counts] { resolution_.run(++iteration_, back_, counts); });
 }
 
 void Evolution::check_all(Seconds& seconds, OperationCounts& counts) {
   const double start = now();
   for (int pass = 0; pass < kCheckPasses; ++pass) {
     const int64_t before = counts.transformations();
-    resolution_.take_all();
-    resolution_.run(++iteration_, counts);
+    detection_.search_near_all();
+    resolution_.run(++iteration_, {}, counts);
     if (counts.transformations() == before) break;
   }
-  passed("check of all");
+  notify("check of all");
   const double end = now();
   seconds.topology += end - start;
   seconds.total += end - start;
@@ -88,7 +110,7 @@ bool Evolution::embedded() {
       mesh_.wake(v);
     }
   }
-  passed("embedded");
+  notify("embedded");
   return meeting.empty();
 }
 
@@ -103,13 +125,15 @@ void Evolution::restore(StateReader& from) {
   from.read(iteration_);
   sleep_.restore(from);
   dynamics_.restore(from);
+  // The hash is built anew: what it finds does not depend on when it was built.
+  detection_.restart();
   resolution_.restore(from);
 }
 
 std::vector<PartHash> Evolution::hashes() const {
   std::vector<PartHash> all = part_hashes(mesh_);
   dynamics_.append_hashes(all);
-  const Surroundings& around = resolution_.surroundings();
+  const Surroundings& around = detection_.surroundings();
   Fnv near;
   for (const VertexPair& pair : around.too_near()) {
     near.add(pair.u);

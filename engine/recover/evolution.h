@@ -1,7 +1,8 @@
-// One iteration of deformation: the procedure Evolution of figure 9.
+// One iteration of deformation: the procedure Evolution of figure 9, as a table of passes.
 #pragma once
 #include "engine/base/schedule.h"
 #include "engine/base/statistics.h"
+#include "engine/detect/detection.h"
 #include "engine/guard/motion_guard.h"
 #include "engine/motion/dynamics.h"
 #include "engine/motion/sleep.h"
@@ -48,8 +49,8 @@ class Evolution {
 
   // For tests. Empty: nobody looks, which costs nothing.
   void set_observer(PassObserver observer) { observer_ = std::move(observer); }
-  // Tells the observer; also of passes that are none of an iteration.
-  void passed(const std::string& pass) const {
+  // Tells the observer; also of what is no pass of an iteration.
+  void notify(const std::string& pass) const {
     if (observer_) observer_(pass, *this);
   }
   // The state as it is now, part by part: between passes all that the next ones read.
@@ -58,12 +59,16 @@ class Evolution {
   size_t awake() const { return sleep_.awake().size() * kRingLanes; }
 
  private:
+  void append_movement(const Guide& guide, Seconds& seconds, std::vector<Pass>& table);
+  void append_topology(Seconds& seconds, OperationCounts& counts, std::vector<Pass>& table);
+
   Mesh& mesh_;
   const Schedule& schedule_;
   SimdTarget simd_;
   bool slow_vertices_;
   Sleep sleep_;
   Dynamics dynamics_;
+  Detection detection_;
   MotionGuard guard_;
   Resolution resolution_;
   Vector<uint32_t> back_;  // vertices that the guard has taken back

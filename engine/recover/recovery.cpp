@@ -83,7 +83,7 @@ Status Recovery::step() {
 void Recovery::renumber() {
   mesh_.renumber(spec_.renumbering ? morton_order(mesh_, schedule_) : living_order(mesh_),
                  schedule_);
-  evolution_.passed("ids");
+  evolution_.notify("ids");
 }
 
 // U_h in mesh units.
@@ -106,7 +106,7 @@ Status Recovery::start_level() {
         !s.ok()) {
       return s;
     }
-    evolution_.passed("start");
+    evolution_.notify("start");
   }
   if (mesh_.vertex_count() == 0) return leave_level();
   estimate_.start_level();
@@ -143,7 +143,7 @@ void Recovery::enter(int h) {
     user_.millimetres[a] = static_cast<float>(pyramid_.levels[0].voxel[a] / space_.step[a]);
   }
   if (spec_.force) {
-    user_.force = [this, h](const Mesh& mesh, const Packed* position, Streams3& force) {
+    user_.force = [this, h](const Mesh& mesh, const Float4* position, Streams3& force) {
       return spec_.force(h, space_, mesh, position, force);
     };
   }
@@ -187,7 +187,7 @@ Status Recovery::adapt() {
     mesh_.turns[v] = 0;
   }
   evolution_.restart();
-  evolution_.passed("refinement");
+  evolution_.notify("refinement");
   record().delta = target;
   record().seconds.topology += now() - start;
   record().seconds.total += now() - start;
@@ -230,7 +230,7 @@ Status Recovery::iterate() {
   estimate_progress();
   renumber_if_scattered();
   if (r.converged || iterations_left() == 0) phase_ = Phase::kCheck;
-  return told();
+  return report_progress();
 }
 
 Status Recovery::check_growth() const {
@@ -241,7 +241,7 @@ Status Recovery::check_growth() const {
               std::to_string(round_.most_vertices) + ": its forces drive it on without end"};
 }
 
-Status Recovery::told() const {
+Status Recovery::report_progress() const {
   if (hooks_.progress && !hooks_.progress(progress_)) return {ErrorCode::kCancelled, "cancelled"};
   return {};
 }
@@ -278,7 +278,7 @@ Status Recovery::verify() {
     return s;
   }
   ++round_.repairs;
-  return told();
+  return report_progress();
 }
 
 Status Recovery::end_round() {
@@ -363,7 +363,7 @@ Status Recovery::add_late_bubbles(bool& added) {
       !s.ok()) {
     return s;
   }
-  evolution_.passed("late bubbles");
+  evolution_.notify("late bubbles");
   const auto& mm = user_.millimetres;
   record().late.bubbles += late.bubbles;
   record().late.cavities += late.cavities;

@@ -24,7 +24,7 @@ namespace plc {
 
 // As UserForce, on a level and in its space.
 using LevelForce = std::function<Status(int level, const MeshSpace& space, const Mesh& mesh,
-                                        const Packed* position, Streams3& force)>;
+                                        const Float4* position, Streams3& force)>;
 
 struct RecoverySpec {
   Model model;
@@ -149,7 +149,7 @@ class Recovery {
   Status ask_verdict();
   Status leave_level();
   Status add_late_bubbles(bool& added);
-  Status told() const;  // the user, of the last iteration
+  Status report_progress() const;  // of the last iteration, to the user
   bool confirmed(int calm);
   bool restore_tried(StateReader& from);
   void renumber();
@@ -180,7 +180,7 @@ class Recovery {
   MeshSpace space_;
   Guide guide_;
   UserConstraints user_;     // in the space of the level
-  Buffer<Packed> gradient_;  // of the level
+  Buffer<Float4> gradient_;  // of the level
   VoxelSet tried_;           // voxels of the level's late bubbles
   double energy_ = 0;        // of the last iteration on any level
   RecoveryProgress progress_{};

@@ -90,15 +90,17 @@ double longest_edge(const Mesh& mesh) {
   return std::sqrt(static_cast<double>(longest));
 }
 
-void settle(Mesh& mesh, const Executor& executor, Resolution& resolution, OperationCounts& counts) {
+void settle(Mesh& mesh, const Executor& executor, Detection& detection, Resolution& resolution,
+            OperationCounts& counts) {
   mesh.renumber(morton_order(mesh, executor), executor);
+  detection.restart();
   resolution.restart();
   for (int pass = 0; pass < kConformPasses; ++pass) {
     const int64_t before = counts.transformations();
     // Nothing freezes here: the passes end where one changes nothing, or there are too many.
     std::fill(mesh.turns.begin(), mesh.turns.end(), uint8_t{0});
-    resolution.take_all();
-    resolution.run(kIteration, counts);
+    detection.search_near_all();
+    resolution.run(kIteration, {}, counts);
     if (counts.transformations() == before) break;
   }
 }
@@ -131,17 +133,18 @@ Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget si
               "the surface has faces too thin to be divided in single precision"};
     }
   }
-  Resolution resolution(mesh, schedule, simd);
+  Detection detection(mesh, schedule, simd);
+  Resolution resolution(mesh, schedule, simd, detection);
   // Just within (2).
   constexpr double kRoom = 1.01;
   double step = longest_edge(mesh) / static_cast<double>(kMaxEdge) * kRoom;
   while (step < delta && mesh.vertex_count() != 0) {
     mesh.delta = step;
-    settle(mesh, schedule, resolution, counts);
+    settle(mesh, schedule, detection, resolution, counts);
     step *= kRefinement;
   }
   mesh.delta = delta;
-  settle(mesh, schedule, resolution, counts);
+  settle(mesh, schedule, detection, resolution, counts);
   put_at_rest(mesh, schedule);
   if (mesh.vertex_count() == 0) {
     return {ErrorCode::kInvalidData,

@@ -40,19 +40,16 @@ Vector<Candidate> collect_sorted(const Executor& executor, size_t count, size_t 
 
 }  // namespace
 
-Resolution::Resolution(Mesh& mesh, const Executor& executor, SimdTarget simd)
+Resolution::Resolution(Mesh& mesh, const Executor& executor, SimdTarget simd, Detection& detection)
     : mesh_(mesh),
       executor_(executor),
       simd_(simd),
-      due_(mesh, executor),
-      hash_(simd),
-      surroundings_(mesh, executor, simd),
-      trials_(mesh, hash_, executor) {}
+      detection_(detection),
+      trials_(mesh, detection.hash(), executor) {}
 
 void Resolution::restart() {
   stamp_.clear();
   stamps_ = round_ = 0;
-  hash_valid_ = false;
   tiny_.start(mesh_);
 }
 
@@ -61,15 +58,17 @@ void Resolution::save(StateWriter& to) const {
   tiny_.save(to);
 }
 
-// The hash is built anew: what it finds does not depend on when it was built.
 void Resolution::restore(StateReader& from) {
   restart();
   from.read(next_cut_);
   tiny_.restore(from, mesh_.slots());
 }
 
-void Resolution::run(uint32_t iteration, OperationCounts& counts) {
+void Resolution::run(uint32_t iteration, const Vector<uint32_t>& moved_since,
+                     OperationCounts& counts) {
   iteration_ = iteration;
+  std::fill(mesh_.operations.begin(), mesh_.operations.end(), uint8_t{0});
+  pair_queue_ = moved_since;
   changed_.clear();
   stamp_.resize(mesh_.slots(), 0);
   queue_violated_edges();
@@ -87,66 +86,13 @@ void Resolution::run(uint32_t iteration, OperationCounts& counts) {
   counts.tetrahedron += tiny_.update(mesh_, changed_);
 }
 
-const Vector<uint32_t>& Resolution::take_due(bool check_all) {
-  if (check_all) {
-    due_.list_all();
-  } else {
-    due_.list_due();
-  }
-  return look_around(check_all);
-}
-
-const Vector<uint32_t>& Resolution::take_due(const Vector<uint32_t>& awake) {
-  due_.list_due(awake);
-  return look_around(false);
-}
-
-const Vector<uint32_t>& Resolution::take_all() {
-  due_.list_all();
-  start_check(true);
-  // Every vertex has just been entered where it is.
-  hash_.set_slack(0);
-  surroundings_.search_near(due_.list(), hash_);
-  hash_.set_slack(kHashSlack * static_cast<float>(mesh_.delta));
-  return due_.list();
-}
-
-// all: whether every vertex is due.
-const Vector<uint32_t>& Resolution::look_around(bool all) {
-  start_check(all);
-  surroundings_.search(due_.list(), hash_);
-  return due_.list();
-}
-
-void Resolution::start_check(bool all) {
-  pair_queue_.clear();
-  std::fill(mesh_.operations.begin(), mesh_.operations.end(), uint8_t{0});
-  update_hash(all);
-}
-
-// A vertex is due before it has moved farther than the slack, and is entered anew then.
-void Resolution::update_hash(bool all) {
-  const bool many = due_.list().size() + hash_.inserted() > mesh_.slots() / kHashInsertions;
-  if (all || many || !hash_valid_) {
-    const auto delta = static_cast<float>(mesh_.delta);
-    hash_.build(mesh_, kHashCell * delta, executor_, kHashSlack * delta);
-    hash_valid_ = true;
-    return;
-  }
-  hash_.insert(mesh_, due_.list(), executor_);
-}
-
-void Resolution::add_due(const Vector<uint32_t>& vertices) {
-  pair_queue_.insert(pair_queue_.end(), vertices.begin(), vertices.end());
-}
-
 void Resolution::queue_violated_edges() {
-  assert(std::is_sorted(due_.list().begin(), due_.list().end()));
+  assert(std::is_sorted(detection_.due().begin(), detection_.due().end()));
   edge_queue_.clear();
   const auto delta = static_cast<float>(mesh_.delta);
   flags_.resize_uninitialized(mesh_.padded());
   blocks_.clear();
-  for (const auto* queue : {&due_.list(), &std::as_const(pair_queue_)}) {
+  for (const auto* queue : {&detection_.due(), &std::as_const(pair_queue_)}) {
     for (const uint32_t v : *queue) {
       if (blocks_.empty() || blocks_.back() != v / kRingLanes) blocks_.push_back(v / kRingLanes);
     }
@@ -156,11 +102,11 @@ void Resolution::queue_violated_edges() {
     blocks_.erase(std::unique(blocks_.begin(), blocks_.end()), blocks_.end());
   }
   run_blocks(executor_, blocks_.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {
-    kernels::edge_violations(simd_, mesh_.rings(), mesh_.packed.data(), delta * delta,
+    kernels::edge_violations(simd_, mesh_.rings(), mesh_.position.data(), delta * delta,
                              kMaxEdge * kMaxEdge * delta * delta,
                              Blocks::of(blocks_.data(), blocks_.size(), begin, end), flags_.data());
   });
-  for (const auto* queue : {&due_.list(), &std::as_const(pair_queue_)}) {
+  for (const auto* queue : {&detection_.due(), &std::as_const(pair_queue_)}) {
     for (const uint32_t v : *queue) {
       if (flags_[v] != 0) edge_queue_.push_back(v);
     }
@@ -236,13 +182,14 @@ bool Resolution::resolve_pairs(bool first, OperationCounts& counts) {
 
 Vector<Candidate> Resolution::pair_candidates(const Vector<uint32_t>& queue, bool first) {
   const uint32_t stamp = stamp_queue(queue);
-  const size_t known = first ? surroundings_.too_near().size() : 0;
+  const size_t known = first ? detection_.surroundings().too_near().size() : 0;
   const auto collect = [&](size_t i, Vector<Candidate>& out) {
     if (i >= known) {
-      proximity_candidates(mesh_, hash_, queue[i - known], stamp_, stamp, iteration_, out);
+      proximity_candidates(mesh_, detection_.hash(), queue[i - known], stamp_, stamp, iteration_,
+                           out);
       return;
     }
-    const VertexPair& pair = surroundings_.too_near()[i];
+    const VertexPair& pair = detection_.surroundings().too_near()[i];
     if (const auto candidate = pair_candidate(mesh_, pair.u, pair.w, iteration_)) {
       out.push_back(*candidate);
     }

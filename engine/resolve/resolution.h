@@ -1,10 +1,8 @@
-// Detection and resolution of the three constraints: the loop of figure 9, in deterministic rounds.
+// Resolution of the three constraints: the loop of figure 9, in deterministic rounds.
 #pragma once
 
 #include "engine/base/statistics.h"
-#include "engine/detect/due_vertices.h"
-#include "engine/detect/spatial_hash.h"
-#include "engine/detect/surroundings.h"
+#include "engine/detect/detection.h"
 #include "engine/detect/tiny_components.h"
 #include "engine/guard/embedding_guard.h"
 #include "engine/guard/trials.h"
@@ -22,34 +20,19 @@ namespace plc {
 // depends on threads or addresses.
 class Resolution {
  public:
-  Resolution(Mesh& mesh, const Executor& executor, SimdTarget simd);
+  // detection: of the same mesh; it outlives this.
+  Resolution(Mesh& mesh, const Executor& executor, SimdTarget simd, Detection& detection);
 
   // Everything that is known about single vertices is forgotten: new ids, new level.
   void restart();
   // What the next pass knows of those before it.
   void save(StateWriter& to) const;
   void restore(StateReader& from);
-  // The vertices that are due for a check by the slow-vertex rule (3.6) - all of them: check_all -
-  // in ascending order; their periods start anew. Also brings the hash up to date and searches what
-  // is around those vertices.
-  const Vector<uint32_t>& take_due(bool check_all);
-  // All of them, for their constraints only: nothing has moved, or will be asked of the motion
-  // guard.
-  const Vector<uint32_t>& take_all();
-  // Of the vertices of these blocks of kRingLanes only, ascending: those of sleep.h.
-  const Vector<uint32_t>& take_due(const Vector<uint32_t>& awake);
-  SpatialHash& hash() { return hash_; }
-  // What take_due() has found.
-  const Surroundings& surroundings() const { return surroundings_; }
-  // These have been moved since take_due(): their constraints are checked, too.
-  void add_due(const Vector<uint32_t>& vertices);
-  // One pass of figure 9 over the vertices that take_due() returned, and those added.
-  void run(uint32_t iteration, OperationCounts& counts);
+  // One pass of figure 9 over the vertices that the detection has found to be due, and over those
+  // that have been moved since.
+  void run(uint32_t iteration, const Vector<uint32_t>& moved_since, OperationCounts& counts);
 
  private:
-  const Vector<uint32_t>& look_around(bool all);
-  void start_check(bool all);
-  void update_hash(bool all);
   void queue_violated_edges();
   void resolve_edges(OperationCounts& counts);
   bool resolve_pairs(bool first, OperationCounts& counts);
@@ -70,18 +53,15 @@ class Resolution {
   bool apply_axial(const Candidate& candidate);
   bool apply_creation(const Candidate& candidate, size_t trial);
   // v has changed: its constraints are checked again in this pass.
-  void involve(uint32_t v);
-  void moved(uint32_t v);
+  void check_again(uint32_t v);
+  void enter_and_check(uint32_t v);
   uint32_t stamp_queue(const Vector<uint32_t>& queue);
   void unique(Vector<uint32_t>& queue);
 
   Mesh& mesh_;
   const Executor& executor_;
   SimdTarget simd_;
-  DueVertices due_;  // of take_due()
-  SpatialHash hash_;
-  bool hash_valid_ = false;
-  Surroundings surroundings_;
+  Detection& detection_;
   TinyComponents tiny_;
   uint32_t iteration_ = 0;
   uint32_t next_cut_ = 1;

@@ -35,21 +35,21 @@ bool Resolution::apply(const Candidate& candidate, size_t trial, OperationCounts
   return false;
 }
 
-void Resolution::involve(uint32_t v) {
+void Resolution::check_again(uint32_t v) {
   edge_queue_.push_back(v);
   pair_queue_.push_back(v);
   mesh_.calm[v] = 0;
   trials_.changed(v);
 }
 
-void Resolution::moved(uint32_t v) {
-  hash_.insert(v, mesh_.at(v));
-  involve(v);
+void Resolution::enter_and_check(uint32_t v) {
+  detection_.hash().insert(v, mesh_.at(v));
+  check_again(v);
 }
 
 bool Resolution::apply_creation(const Candidate& candidate, size_t trial) {
   if (trials_.admitted(candidate, trial) == Trials::kRefused) return false;
-  moved(create_on_edge(mesh_, candidate.edge));
+  enter_and_check(create_on_edge(mesh_, candidate.edge));
   return true;
 }
 
@@ -57,7 +57,7 @@ bool Resolution::apply_inversion(const Candidate& candidate, size_t trial) {
   const Edge& e = candidate.edge;
   if (trials_.admitted(candidate, trial) == Trials::kRefused) return false;
   invert_edge(mesh_, e);
-  for (const uint32_t v : {e.u, e.v, e.a, e.b}) involve(v);
+  for (const uint32_t v : {e.u, e.v, e.a, e.b}) check_again(v);
   return true;
 }
 
@@ -72,7 +72,7 @@ bool Resolution::apply_deletion(const Candidate& candidate, size_t trial, Operat
   const uint32_t place = trials_.admitted(candidate, trial);
   if (place == Trials::kRefused) return false;
   delete_edge(mesh_, e, Trials::deletion_place(mesh_, e, place));
-  moved(e.u);
+  enter_and_check(e.u);
   changed_.push_back(e.u);
   ++counts.deletion;
   return true;
@@ -82,11 +82,11 @@ bool Resolution::apply_annular(const Candidate& candidate) {
   const Edge& e = candidate.edge;
   const Cycle cycle{{e.u, e.v, e.a}};
   const auto copies = annular_copies(mesh_, cycle, kAnnularRetreat);
-  if (!guard_.embeds(mesh_, hash_, propose_annular(mesh_, cycle, copies))) return false;
+  if (!guard_.embeds(mesh_, detection_.hash(), propose_annular(mesh_, cycle, copies))) return false;
   const auto right = cut_cycle(mesh_, cycle, copies, next_cut_++, iteration_);
   for (uint32_t i = 0; i < 3; ++i) {
     for (const uint32_t v : {cycle.corner[i], right[i]}) {
-      moved(v);
+      enter_and_check(v);
       changed_.push_back(v);
     }
   }
@@ -95,8 +95,8 @@ bool Resolution::apply_annular(const Candidate& candidate) {
 
 bool Resolution::apply_axial(const Candidate& candidate) {
   const AxialPlan plan = plan_axial(mesh_, candidate.edge.u, candidate.edge.v);
-  if (!guard_.embeds(mesh_, hash_, propose_axial(mesh_, plan))) return false;
-  for (const uint32_t v : join(mesh_, plan)) moved(v);
+  if (!guard_.embeds(mesh_, detection_.hash(), propose_axial(mesh_, plan))) return false;
+  for (const uint32_t v : join(mesh_, plan)) enter_and_check(v);
   return true;
 }
 

@@ -215,7 +215,7 @@ Status make_mesh(const StartSpec& spec, const LevelImage& level, const Executor&
   for (size_t i = 0; i < xyz.size(); ++i) xyz[i] = spec.xyz[i] * level.space.step[i % 3];
   return import_mesh(xyz.data(), static_cast<int64_t>(xyz.size() / 3), spec.abc.data(),
                      static_cast<int64_t>(spec.abc.size() / 3), executor, mesh,
-                     spec.told.empty() ? nullptr : spec.told.data());
+                     spec.as_given.empty() ? nullptr : spec.as_given.data());
 }
 
 // Every so many voxels of an image that is finer than delta on some axis (level_delta): a surface

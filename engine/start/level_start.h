@@ -32,10 +32,10 @@ struct StartSpec {
   Init init = Init::kBubble;
   std::array<int, 3> bubbles{1, 1, 1};
   std::vector<Seed> seeds;
-  Pyramid mask;          // kMask: a pyramid like the image's, the object near 1
-  Vector<double> xyz;    // kMesh: three voxel indices of the unpadded I_0 per vertex
-  Vector<double> told;   // ... the same vertices as the user gave them, for messages
-  Vector<uint32_t> abc;  // ... three vertices per face, counter-clockwise seen from outside
+  Pyramid mask;             // kMask: a pyramid like the image's, the object near 1
+  Vector<double> xyz;       // kMesh: three voxel indices of the unpadded I_0 per vertex
+  Vector<double> as_given;  // ... the same vertices as the user gave them, for messages
+  Vector<uint32_t> abc;     // ... three vertices per face, counter-clockwise seen from outside
 };
 
 // What the start needs to know of its level.

@@ -28,10 +28,10 @@ Status refused(const std::string& message) {
 // Says what is wrong with a mesh that check_mesh() calls invalid, the root of the trouble first.
 class Complaint {
  public:
-  Complaint(const double* xyz, const double* told, size_t vertex_count, const uint32_t* abc,
+  Complaint(const double* xyz, const double* as_given, size_t vertex_count, const uint32_t* abc,
             size_t face_count, const Executor& executor)
       : xyz_(xyz),
-        told_(told),
+        as_given_(as_given),
         abc_(abc),
         vertex_count_(vertex_count),
         face_count_(face_count),
@@ -64,7 +64,7 @@ class Complaint {
 
  private:
   // As the caller knows it.
-  const double* point(size_t v) const { return told_ + 3 * v; }
+  const double* point(size_t v) const { return as_given_ + 3 * v; }
 
   static std::string at(double x, double y, double z) {
     char line[96];
@@ -162,20 +162,21 @@ class Complaint {
                                 : ", whose faces must be turned outward");
   }
 
-  const double *xyz_, *told_;
+  const double *xyz_, *as_given_;
   const uint32_t* abc_;
   size_t vertex_count_, face_count_;
   const Executor& executor_;
 };
 
-Status check_input(const double* xyz, const double* told, int64_t vertex_count, const uint32_t* abc,
-                   int64_t face_count, const char* prefix, const Executor& executor) {
+Status check_input(const double* xyz, const double* as_given, int64_t vertex_count,
+                   const uint32_t* abc, int64_t face_count, const char* prefix,
+                   const Executor& executor) {
   MeshCheck check;
   if (Status s = check_mesh(xyz, vertex_count, abc, face_count, executor, check); !s.ok()) {
     return {s.code(), "mesh: " + s.message()};
   }
   if (check.valid == 1) return {};
-  const Complaint complaint(xyz, told, static_cast<size_t>(vertex_count), abc,
+  const Complaint complaint(xyz, as_given, static_cast<size_t>(vertex_count), abc,
                             static_cast<size_t>(face_count), executor);
   return refused(prefix + complaint.of(check));
 }
@@ -222,10 +223,10 @@ Status check_range(const double* xyz, size_t vertex_count, const FaceRings& ring
 }  // namespace
 
 Status import_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
-                   const Executor& executor, Mesh& mesh, const double* told) {
-  if (told == nullptr) told = xyz;
+                   const Executor& executor, Mesh& mesh, const double* as_given) {
+  if (as_given == nullptr) as_given = xyz;
   if (Status s = check_valences(vertex_count, abc, face_count); !s.ok()) return s;
-  if (Status s = check_input(xyz, told, vertex_count, abc, face_count, "mesh: ", executor);
+  if (Status s = check_input(xyz, as_given, vertex_count, abc, face_count, "mesh: ", executor);
       !s.ok()) {
     return s;
   }
@@ -243,7 +244,7 @@ Status import_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc,
     }
   }
   if (!std::equal(back.begin(), back.end(), xyz)) {
-    if (Status s = check_input(back.data(), told, vertex_count, abc, face_count,
+    if (Status s = check_input(back.data(), as_given, vertex_count, abc, face_count,
                                "mesh: after rounding to single precision: ", executor);
         !s.ok()) {
       return s;

@@ -17,9 +17,9 @@ namespace plc {
 // cavities: outside out), faces of zero area, self-intersecting - or become so by the rounding of
 // coordinates to float - or with more vertices or edges at a vertex than ids have room for. One
 // line that says what is wrong, how often and where first, in the ids given and at the places of
-// `told`: three values per vertex as the caller's user knows them; NULL: xyz.
+// `as_given`: three values per vertex as the caller's user knows them; NULL: xyz.
 // kInvalidArgument for counts below 0 and NULL. The same for any executor.
 Status import_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
-                   const Executor& executor, Mesh& mesh, const double* told = nullptr);
+                   const Executor& executor, Mesh& mesh, const double* as_given = nullptr);
 
 }  // namespace plc

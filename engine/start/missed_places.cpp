@@ -71,7 +71,7 @@ class Search {
   void clear_near(const Mesh& mesh, float clearance) {
     for (uint32_t v = 0; v < mesh.slots(); ++v) {
       if (!mesh.alive(v)) continue;
-      const Packed& p = mesh.packed[v];
+      const Float4& p = mesh.position[v];
       const float at[3] = {p.x, p.y, p.z};
       Voxel low, high;
       std::array<float, 3> centre;

@@ -42,7 +42,7 @@ class Rows {
 
  private:
   Point voxel(uint32_t v) const {
-    const Packed& p = mesh_.packed[v];
+    const Float4& p = mesh_.position[v];
     const float at[3] = {p.x, p.y, p.z};
     Point c;
     for (size_t a = 0; a < 3; ++a) {

@@ -1,5 +1,6 @@
 # Coarse to fine, one thing different at a time. What only changes how results are computed must not
 # change them.
+without() { "$build/perf/bench_ablation" "$head_ct" "$1" >"$report"; }
 declare -A other=()  # variants with results of their own
 all=("${bone[@]}" --levels 3 --no-late-bubbles)
 variant whole extract "$head_ct" "${all[@]}"
@@ -12,13 +13,12 @@ for target in scalar sse4 avx2 avx512; do
   fi
 done
 variant one-thread extract "$head_ct" "${all[@]}" --threads 1
-for option in --check-all --no-sleeping --no-renumbering; do
-  if has_option "$option"; then
-    variant "${option#--}" extract "$head_ct" "${all[@]}" "$option"
-    other[${option#--}]=1
-  else
-    echo "ablation: pellicle extract has no $option, left out"
-  fi
+variant no-sleeping extract "$head_ct" "${all[@]}" --no-sleeping
+other[no-sleeping]=1
+# What is left out for comparisons only is no option of the command.
+for heuristic in check-all no-renumbering; do
+  variant "$heuristic" without "$heuristic"
+  other[$heuristic]=1
 done
 run_variants
 

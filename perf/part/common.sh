@@ -58,9 +58,6 @@ run_variants() {
   done
 }
 
-# has_option OPTION: whether `pellicle extract` knows it.
-has_option() { grep -q -- "^ *$1\b" <<<"$("$pellicle" extract --help)"; }
-
 # same_hash VARIANT...: the hash that all their runs have; fails where they differ.
 same_hash() {
   local name

@@ -114,8 +114,7 @@ TEST_CASE("each number outside its range is refused by name, value and range", "
       {&P::levels, 32, "levels 32: must be 0 .. 31"},
       {&P::max_iterations, 0, "max iterations 0: must be at least 1"},
       {&P::sleeping, 2, "sleeping 2: must be 0 or 1"},
-      {&P::slow_vertices, -1, "slow vertices -1: must be 0 or 1"},
-      {&P::renumbering, 2, "renumbering 2: must be 0 or 1"},
+      {&P::late_bubbles, -1, "late bubbles -1: must be 0 or 1"},
       {&P::level_iso_count, -1, "level iso-values: -1 given, 1 expected (one per level)"},
       {&P::level_iso_count, 33, "level iso-values: 33 given, 1 expected (one per level)"},
   };

@@ -283,23 +283,29 @@ TEST_CASE("progress is told after every iteration and may cancel", "[pellicle]")
 
 TEST_CASE("a level tells how many vertices it has moved and checked", "[pellicle]") {
   const Context context = samples::make_context();
-  const plc_image image = samples::image_of(ball());
-  const auto level = [&](int spare) {
+  // From a seed at one end of a bar: that end rests while the other one is not reached.
+  const samples::Volume bar =
+      samples::sampled(samples::empty_volume({60, 14, 14}), [](const samples::Point& p) {
+        return 0.5 + std::min({25 - std::abs(p[0]), 3.5 - std::abs(p[1]), 3.5 - std::abs(p[2])});
+      });
+  const plc_image image = samples::image_of(bar);
+  const plc_seed seed{{8, 6.5, 6.5}, 3};
+  const auto level = [&](int sleeping) {
     plc_parameters p = samples::parameters(0.5, 0);
-    p.sleeping = p.slow_vertices = spare;
-    p.epsilon = 1e-15;  // all the iterations
-    p.max_iterations = 80;
-    const Surface surface = samples::extract(context.get(), image, p);
+    p.init = PLC_INIT_SEEDS;
+    p.sleeping = sleeping;
+    plc_extras extras;
+    plc_extras_defaults(&extras);
+    extras.space = PLC_SPACE_VOXEL;
+    extras.seeds = &seed;
+    extras.seed_count = 1;
+    const Surface surface = samples::extract(context.get(), image, p, &extras);
     return samples::level_of(surface.get(), 0);
   };
   const plc_level_report all = level(0), some = level(1);
-  // Blocks are moved whole, deleted vertices with them.
-  CHECK(all.moves >= all.checks);
-  CHECK(all.iterations == some.iterations);
-  CHECK(all.checks >= all.iterations * all.vertices);
-  CHECK(some.moves < all.moves);
-  CHECK(some.checks < all.checks / 2);
+  CHECK(all.checks < all.moves);
   CHECK(some.checks > 0);
+  CHECK(some.moves < all.moves * some.iterations / all.iterations);
 }
 
 TEST_CASE("every voxel type gives the same surface of the same values", "[pellicle]") {

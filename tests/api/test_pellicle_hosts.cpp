@@ -277,9 +277,9 @@ TEST_CASE("a host that was built with an older header gets the rest at its defau
   const Context context = samples::make_context();
   plc_parameters p = samples::parameters(0.5, 1);
   const uint64_t expected = plc_surface_hash(samples::extract(context.get(), image, p).get());
-  // As if sleeping, slow_vertices and renumbering had not been there yet.
+  // As if sleeping had not been there yet.
   p.struct_size = offsetof(plc_parameters, sleeping);
-  p.sleeping = p.slow_vertices = p.renumbering = 77;
+  p.sleeping = 77;
   const Surface surface = samples::extract(context.get(), image, p);
   CHECK(plc_surface_hash(surface.get()) == expected);
   // And is told no more than it has room for.

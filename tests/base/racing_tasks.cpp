@@ -37,9 +37,9 @@ int main(int argc, char** argv) {
   if (kind == "loop") {
     schedule.run(2, [](size_t) { race(); });
   } else if (kind == "wave") {
-    schedule.run_passes(
-        {{"one", 0, plc::kNormals, &seconds, race}, {"two", 0, plc::kRestLength, &seconds, race}},
-        false);
+    const std::vector<plc::Pass> table{{"one", 0, plc::kNormals, &seconds, race},
+                                       {"two", 0, plc::kRestLength, &seconds, race}};
+    if (!schedule.run_passes(table, false).ok()) return 1;
   } else {
     std::fputs("usage: racing_tasks loop|wave\n", stderr);
     return 2;

@@ -113,7 +113,7 @@ TEST_CASE("passes keep their order where one writes what another reads or writes
           traced("overwrite", plc::kRings, plc::kNormals, seconds[1], overwritten, clock),
           traced("last", plc::kNormals | plc::kEnergy | plc::kRestLength, 0, seconds[1], last,
                  clock)};
-      schedule.run_passes(table, small);
+      CHECK(schedule.run_passes(table, small).ok());
       CAPTURE(threads, small);
       CHECK(clock == 10);
       CHECK(written.end < read.begin);
@@ -141,8 +141,9 @@ TEST_CASE("passes that touch nothing of each other run at the same time", "[sche
                   both = begun == 2;
                 }};
   };
-  schedule.run_passes(
-      {meeting("one", plc::kNormals, met[0]), meeting("two", plc::kRestLength, met[1])}, false);
+  const std::vector<Pass> table{meeting("one", plc::kNormals, met[0]),
+                                meeting("two", plc::kRestLength, met[1])};
+  CHECK(schedule.run_passes(table, false).ok());
   CHECK(met[0]);
   CHECK(met[1]);
 }
@@ -162,13 +163,14 @@ TEST_CASE("who waits for passes to end is told the same for any threads, when no
       };
       std::vector<std::string> told;
       std::vector<int> count;
-      schedule.run_passes(
-          {pass("normals", 0, plc::kNormals), pass("rest length", 0, plc::kRestLength),
-           pass("stage", plc::kNormals, plc::kStages)},
-          small, [&](const std::string& names) {
-            told.push_back(names);
-            count.push_back(ended);
-          });
+      const std::vector<Pass> table{pass("normals", 0, plc::kNormals),
+                                    pass("rest length", 0, plc::kRestLength),
+                                    pass("stage", plc::kNormals, plc::kStages)};
+      const auto after = [&](const std::string& names) {
+        told.push_back(names);
+        count.push_back(ended);
+      };
+      CHECK(schedule.run_passes(table, small, after).ok());
       CAPTURE(threads, small);
       CHECK(told == std::vector<std::string>{"normals, rest length", "stage"});
       CHECK(count == std::vector<int>{2, 3});
@@ -180,16 +182,32 @@ TEST_CASE("small passes run on the calling thread", "[schedule]") {
   const Schedule schedule(3);
   double seconds = 0;
   std::thread::id thread;
-  schedule.run_passes({{"pass", plc::kRings, plc::kNormals, &seconds,
-                        [&] { thread = std::this_thread::get_id(); }}},
-                      true);
+  const auto body = [&] { thread = std::this_thread::get_id(); };
+  const Pass pass{"pass", plc::kRings, plc::kNormals, &seconds, body};
+  CHECK(schedule.run_passes({pass}, true).ok());
   CHECK(thread == std::this_thread::get_id());
 }
 
 TEST_CASE("an empty table is nothing to do", "[schedule]") {
-  Schedule(2).run_passes({}, false);
-  Schedule(1).run_passes({}, true);
-  SUCCEED();
+  CHECK(Schedule(2).run_passes({}, false).ok());
+  CHECK(Schedule(1).run_passes({}, true).ok());
+}
+
+TEST_CASE("a pass that fails ends the table, and its status is the table's", "[schedule]") {
+  for (const int threads : kThreads) {
+    const Schedule schedule(threads);
+    double seconds = 0;
+    std::vector<std::string> told;
+    bool went_on = false;
+    const auto fails = [] { return plc::Status{plc::ErrorCode::kInvalidData, "no"}; };
+    const std::vector<Pass> table{{"first", 0, plc::kNormals, &seconds, [] {}},
+                                  {"fails", plc::kNormals, plc::kStages, &seconds, fails},
+                                  {"after", plc::kStages, 0, &seconds, [&] { went_on = true; }}};
+    const auto after = [&](const std::string& names) { told.push_back(names); };
+    CHECK(schedule.run_passes(table, false, after).message() == "no");
+    CHECK_FALSE(went_on);
+    CHECK(told == std::vector<std::string>{"first"});
+  }
 }
 
 TEST_CASE("the clock does not go back", "[schedule]") {

@@ -78,8 +78,6 @@ void choose_model(Case& c) {
   p.max_iterations = random.one_of(kIterations);
   p.late_bubbles = random.integer(0, 3) == 0 ? 0 : 1;
   p.sleeping = random.integer(0, 2) == 0 ? 0 : 1;
-  p.slow_vertices = random.integer(0, 3) == 0 ? 0 : 1;
-  p.renumbering = random.integer(0, 5) == 0 ? 0 : 1;
 }
 
 // Of thin and noisy objects, too: what is drawn stays, how the surface moves over it is as shipped.
@@ -103,7 +101,7 @@ void choose_rest(Case& c, Random& random) {
   p.epsilon = defaults.epsilon;
   p.calm_speed = defaults.calm_speed;
   p.max_iterations = defaults.max_iterations;
-  p.late_bubbles = p.sleeping = p.slow_vertices = p.renumbering = 1;
+  p.late_bubbles = p.sleeping = 1;
   c.force = UserForce::kNone;
   c.attachments.clear();
   c.pins.clear();
@@ -233,10 +231,10 @@ std::string description(const Case& c) {
       << " mass " << p.mass << " damping " << p.damping << " time_step " << p.time_step
       << " max_move " << p.max_move << " bound " << p.bound << "\n  epsilon " << p.epsilon
       << " calm_speed " << p.calm_speed << " max_iterations " << p.max_iterations
-      << " late_bubbles " << p.late_bubbles << " sleeping " << p.sleeping << " slow_vertices "
-      << p.slow_vertices << " renumbering " << p.renumbering << " more " << c.more_level << " stop "
-      << c.stop_level << " cancel " << c.cancel_at << " work " << c.work << " rests " << c.rests
-      << "\n  space " << (c.space <= PLC_SPACE_VOXEL ? kSpaceNames[c.space] : "?")
+      << " late_bubbles " << p.late_bubbles << " sleeping " << p.sleeping << " more "
+      << c.more_level << " stop " << c.stop_level << " cancel " << c.cancel_at << " work " << c.work
+      << " rests " << c.rests << "\n  space "
+      << (c.space <= PLC_SPACE_VOXEL ? kSpaceNames[c.space] : "?")
       << (c.fault.empty() ? "" : ", wrong on purpose: ") << c.fault << "\n  second run: threads "
       << way.threads << " target " << way.simd << " steps " << way.steps << " ownership "
       << way.ownership << " amount " << way.amount << " pause " << way.pause_at << " save "

@@ -169,7 +169,7 @@ def choose_options(draw, values, finest):
     maybe(0.2, "--epsilon", f"{log_uniform(draw, 1e-6, 1e-2):.4g}")
     maybe(0.1, "--calm-speed", f"{log_uniform(draw, 1e-3, 1):.4g}")
     maybe(0.2, "--max-iterations", draw.choice(["1", "50", "200"]))
-    for flag in ("--no-late-bubbles", "--no-sleeping", "--check-all", "--each-level"):
+    for flag in ("--no-late-bubbles", "--no-sleeping", "--each-level"):
         maybe(0.1, flag)
     maybe(0.3, "--space", draw.choice(["ras", "voxel"]))
     return options

@@ -184,7 +184,7 @@ void check_all_pairs(const std::vector<Grid3>& points, unsigned step) {
   CHECK(wrong == 0);
 }
 
-plc::Packed packed(float x, float y, float z) {
+plc::Float4 packed(float x, float y, float z) {
   return {x, y, z, 0};
 }
 
@@ -229,7 +229,7 @@ TEST_CASE("random pairs on larger grids are judged as by exact clipping",
 
 TEST_CASE("faces across an edge meet only when one is folded back onto the other",
           "[triangle_intersection]") {
-  const plc::Packed p[] = {packed(0, 0, 0),  packed(1, 0, 0),      packed(0, 1, 0),
+  const plc::Float4 p[] = {packed(0, 0, 0),  packed(1, 0, 0),      packed(0, 1, 0),
                            packed(0, -1, 0), packed(0.3F, 2, 0),   packed(0.3F, 2, 1e-30F),
                            packed(0, 1, 0),  packed(1, -3, 1e-3F), packed(5, 0, 0)};
   const uint32_t face[3] = {0, 1, 2};

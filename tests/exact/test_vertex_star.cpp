@@ -44,7 +44,7 @@ samples::Rings rings_of_fan(const Soup& m) {
 
 bool plain(const Soup& m) {
   const samples::Rings r = rings_of_fan(m);
-  return plc::star_is_plain(r.view(), r.positions.data(), 0);
+  return plc::star_is_embedded(r.view(), r.positions.data(), 0);
 }
 
 bool meets_itself(const Soup& m) {
@@ -67,7 +67,7 @@ TEST_CASE("every star of a smooth surface is plain", "[vertex_star]") {
        {samples::sphere(3), samples::torus(30, 18, 2, 0.7), samples::octahedron()}) {
     const samples::Rings r = samples::rings_of(m);
     for (uint32_t v = 0; v < r.slots(); ++v) {
-      CHECK(plc::star_is_plain(r.view(), r.positions.data(), v));
+      CHECK(plc::star_is_embedded(r.view(), r.positions.data(), v));
     }
   }
 }

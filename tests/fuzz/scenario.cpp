@@ -135,8 +135,6 @@ void Scenario::choose_pace(Input& input) {
   const uint8_t ways = input.raw<uint8_t>();
   p.late_bubbles = (ways & 1) == 0 ? 1 : 0;
   p.sleeping = (ways & 2) == 0 ? 1 : 0;
-  p.slow_vertices = (ways & 4) == 0 ? 1 : 0;
-  p.renumbering = (ways & 8) == 0 ? 1 : 0;
 }
 
 void Scenario::choose_start(Input& input) {

@@ -40,7 +40,7 @@ bool share_vertex(const plc::MeetingSearch& search, const FacePair& pair) {
 plc::Vector<FacePair> expected(const plc::MeetingSearch& search, const samples::Rings& r,
                                const plc::Vector<uint8_t>& marked) {
   std::vector<double> xyz;
-  for (const plc::Packed& p : r.positions) xyz.insert(xyz.end(), {p.x, p.y, p.z});
+  for (const plc::Float4& p : r.positions) xyz.insert(xyz.end(), {p.x, p.y, p.z});
   plc::Vector<FacePair> pairs;
   const auto is_marked = [&](uint32_t f) {
     const uint32_t* abc = search.face(f);

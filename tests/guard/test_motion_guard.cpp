@@ -21,7 +21,7 @@ using samples::Soup;
 // What Evolution does around a movement: normals of its start, the table and risks of its end.
 class Movement {
  public:
-  explicit Movement(Mesh& mesh) : mesh_(mesh), before_(mesh.packed) {
+  explicit Movement(Mesh& mesh) : mesh_(mesh), before_(mesh.position) {
     for (uint32_t v = 0; v < mesh.slots(); ++v) {
       if (mesh.alive(v)) mesh.normal.set(v, plc::vertex_normal(mesh, v));
     }
@@ -50,14 +50,14 @@ class Movement {
     return count;
   }
   bool is_back(uint32_t v) const {
-    const plc::Packed& p = mesh_.packed[v];
+    const plc::Float4& p = mesh_.position[v];
     return p.x == before_[v].x && p.y == before_[v].y && p.z == before_[v].z;
   }
   plc::SpatialHash& hash() { return hash_; }
 
  private:
   Mesh& mesh_;
-  plc::Buffer<plc::Packed> before_;
+  plc::Buffer<plc::Float4> before_;
   plc::SpatialHash hash_;
 };
 

@@ -9,8 +9,8 @@
 namespace golden {
 
 using namespace fixtures;
+using plc::Float4;
 using plc::Fnv;
-using plc::Packed;
 using plc::SimdTarget;
 namespace kernels = plc::kernels;
 

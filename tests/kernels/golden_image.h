@@ -21,9 +21,9 @@ namespace golden {
 
 // ---- image_force.h, image_rows.h, gradient_force.h: places in and around an image.
 
-inline std::vector<Packed> places() {
+inline std::vector<Float4> places() {
   const std::vector<float> v = random_floats(size_t{3} * 512, -4, 40, 41);
-  std::vector<Packed> all;
+  std::vector<Float4> all;
   for (size_t i = 0; i + 2 < v.size(); i += 3) all.push_back({v[i], v[i + 1], v[i + 2], 0});
   return all;
 }
@@ -50,7 +50,7 @@ struct Image<plc::UnitVoxel> {
 template <typename Voxel>
 inline uint64_t sample_trilinear(SimdTarget simd) {
   const Image<Voxel> image;
-  const std::vector<Packed> at = places();
+  const std::vector<Float4> at = places();
   std::vector<float> values(at.size());
   const auto end = static_cast<uint32_t>(at.size() - 5);
   kernels::sample_trilinear(simd, image.view, at.data(), 3, end, values.data());
@@ -60,7 +60,7 @@ inline uint64_t sample_trilinear(SimdTarget simd) {
 template <typename Voxel>
 inline uint64_t iso_force(SimdTarget simd) {
   const Image<Voxel> image;
-  const std::vector<Packed> at = places();
+  const std::vector<Float4> at = places();
   const auto n = static_cast<uint32_t>(at.size());
   const Three normal(n, -1, 1, 43);
   Three force(n, -1, 1, 46);
@@ -79,13 +79,13 @@ inline uint64_t image_rows(SimdTarget simd) {
 }
 
 inline uint64_t gradient_force(SimdTarget simd) {
-  std::vector<Packed> vectors;
+  std::vector<Float4> vectors;
   const Three field(size_t{21} * 19 * 17, -1, 1, 51);
   for (size_t i = 0; i < field.x.size(); ++i) {
     vectors.push_back({field.x[i], field.y[i], field.z[i], 0});
   }
   const plc::GradientView view{vectors.data(), {21, 19, 17}, {0.5F, 0.6F, 0.7F}, {1, 2, 3}};
-  const std::vector<Packed> at = places();
+  const std::vector<Float4> at = places();
   const auto n = static_cast<uint32_t>(at.size());
   const Three normal(n, -1, 1, 54);
   Three force(n, -1, 1, 57);
@@ -120,7 +120,7 @@ inline uint64_t sobel(SimdTarget simd) {
 
 inline uint64_t bound_vectors(SimdTarget simd) {
   const Three g(kWidth, -1, 1, 64);
-  std::vector<Packed> vectors(kWidth);
+  std::vector<Float4> vectors(kWidth);
   kernels::bound_vectors(simd, g.x.data(), g.y.data(), g.z.data(), kWidth, 0.8F, vectors.data());
   return hash_of(flatten(vectors));
 }

@@ -22,7 +22,7 @@ struct Rings {
   RandomRings rings = mixed_rings(64, 11);
   uint32_t n = rings.count();
   plc::RingView view = rings.view();
-  const Packed* position = rings.position.data();
+  const Float4* position = rings.position.data();
   plc::Blocks all = plc::Blocks::range(0, n);
 };
 
@@ -30,7 +30,7 @@ inline constexpr plc::Metric kStretched{1.25F, 1, 2.4F};
 
 inline uint64_t laplacian(SimdTarget simd) {
   const Rings r;
-  std::vector<Packed> out(r.n);
+  std::vector<Float4> out(r.n);
   kernels::laplacian(simd, r.view, r.position, r.all, out.data());
   return hash_of(flatten(out));
 }
@@ -68,7 +68,7 @@ inline uint64_t normals(SimdTarget simd) {
 inline uint64_t normals_and_laplacian(SimdTarget simd) {
   const Rings r;
   Three normal(r.n);
-  std::vector<Packed> mean(r.n);
+  std::vector<Float4> mean(r.n);
   const auto [x, y, z] = normal.out();
   kernels::normals_and_laplacian(simd, r.view, r.position, r.all, x, y, z, mean.data());
   Fnv hash;
@@ -133,7 +133,7 @@ struct Step {
   Three velocity{n, -2, 2, 20}, force{n, -2, 2, 23}, speed{n, -2, 2, 26}, moved{n, -2, 2, 29},
       rate{n, -2, 2, 32}, normal{n, -2, 2, 35};
   std::vector<float> image = random_floats(size_t{60} * 50 * 40, 0, 1, 14);
-  std::vector<Packed> laplacian{n}, stage{n}, moved_to{n};
+  std::vector<Float4> laplacian{n}, stage{n}, moved_to{n};
   std::vector<float> path = random_floats(n, 0, 1, 38);
   std::vector<uint8_t> turns = std::vector<uint8_t>(n, 0);
   kernels::Rk4Streams streams{rings.position.data(), velocity.in(), speed.out(),

@@ -25,7 +25,7 @@ TEST_CASE("rows blended along y and z finish trilinear sampling, bit for bit", "
   const float y = 0.3F, z = 0.81F;
   // Along x first: at places between the voxels.
   std::vector<float> rows[4], expected;
-  std::vector<plc::Packed> place;
+  std::vector<plc::Float4> place;
   for (size_t i = 0; i < 90; ++i) {
     const float x = 0.41F * static_cast<float>(i);
     place.push_back({x, y, z, 0});

@@ -12,15 +12,15 @@
 namespace {
 
 using namespace fixtures;
+using plc::Float4;
 using plc::GradientView;
-using plc::Packed;
 using plc::SimdTarget;
 namespace kernels = plc::kernels;
 namespace scalar = plc::kernels::scalar;
 using Vector = std::array<double, 3>;
 
 struct Field {
-  std::vector<Packed> vectors;
+  std::vector<Float4> vectors;
   GradientView view;
   Field(int32_t m, int32_t n, int32_t p, uint32_t seed)
       : vectors(static_cast<size_t>(m) * static_cast<size_t>(n) * static_cast<size_t>(p)) {
@@ -36,7 +36,7 @@ struct Field {
 };
 
 // Eight vectors weighted by the opposite volumes, in double; outside, the border is replicated.
-Vector expected_gradient(const GradientView& field, const Packed& p) {
+Vector expected_gradient(const GradientView& field, const Float4& p) {
   const double place[3] = {double{p.x}, double{p.y}, double{p.z}};
   int32_t cell[3];
   double fraction[3];
@@ -55,7 +55,7 @@ Vector expected_gradient(const GradientView& field, const Packed& p) {
       weight *= up == 1 ? fraction[a] : 1.0 - fraction[a];
       index[a] = cell[a] + up;
     }
-    const Packed& v = field.data[index[0] + field.dims[0] * (index[1] + field.dims[1] * index[2])];
+    const Float4& v = field.data[index[0] + field.dims[0] * (index[1] + field.dims[1] * index[2])];
     sum[0] += weight * double{v.x};
     sum[1] += weight * double{v.y};
     sum[2] += weight * double{v.z};
@@ -79,9 +79,9 @@ Streams unit_normals(uint32_t count, uint32_t seed) {
   return n;
 }
 
-std::vector<Packed> places(uint32_t count, uint32_t seed) {
+std::vector<Float4> places(uint32_t count, uint32_t seed) {
   const std::vector<float> v = random_floats(size_t{count} * 3, -10.0F, 50.0F, seed);
-  std::vector<Packed> all(count);
+  std::vector<Float4> all(count);
   for (uint32_t i = 0; i < count; ++i) all[i] = {v[3 * i], v[3 * i + 1], v[3 * i + 2], 0.0F};
   return all;
 }
@@ -91,14 +91,14 @@ struct Coefficients {
   std::array<float, 3> map;
 };
 
-void apply(SimdTarget simd, const GradientView& view, const std::vector<Packed>& position,
+void apply(SimdTarget simd, const GradientView& view, const std::vector<Float4>& position,
            const Streams& n, const Coefficients& c, uint32_t begin, uint32_t end, Streams& f) {
   kernels::gradient_force(simd, view, position.data(), n.axis[0].data(), n.axis[1].data(),
                           n.axis[2].data(), c.along_normal, c.along_tangent, c.map, begin, end,
                           f.axis[0].data(), f.axis[1].data(), f.axis[2].data());
 }
 
-void apply_twin(const GradientView& view, const std::vector<Packed>& position, const Streams& n,
+void apply_twin(const GradientView& view, const std::vector<Float4>& position, const Streams& n,
                 const Coefficients& c, uint32_t begin, uint32_t end, Streams& f) {
   scalar::gradient_force(view, position.data(), n.axis[0].data(), n.axis[1].data(),
                          n.axis[2].data(), c.along_normal, c.along_tangent, c.map, begin, end,
@@ -125,7 +125,7 @@ TEST_CASE("the gradient force is equation (8), added to what is there", "[kernel
   field.view.offset[0] = 0.5F;
   field.view.offset[1] = -3.25F;
   const uint32_t count = 160;
-  const std::vector<Packed> position = places(count, 2);
+  const std::vector<Float4> position = places(count, 2);
   const Streams n = unit_normals(count, 3);
   for (const Coefficients& c :
        {Coefficients{1.3F, -0.4F, {1, 1, 1}}, Coefficients{0.6F, 0.6F, {1, 1, 1}},
@@ -160,7 +160,7 @@ TEST_CASE("the gradient force is equation (8), added to what is there", "[kernel
 TEST_CASE("no position makes the gradient force read outside the field", "[kernels]") {
   // The field fills its allocation, so that a sanitizer sees any voxel read outside of it.
   Field field(2, 2, 2, 4);
-  std::vector<Packed> position;
+  std::vector<Float4> position;
   const float inf = std::numeric_limits<float>::infinity();
   const std::vector<float> wild = {std::numeric_limits<float>::quiet_NaN(),
                                    inf,
@@ -194,8 +194,8 @@ TEST_CASE("no position makes the gradient force read outside the field", "[kerne
 
 TEST_CASE("one coefficient alone pulls along the normal or along the tangent plane", "[kernels]") {
   Field field(2, 2, 2, 6);
-  for (Packed& v : field.vectors) v = {0.5F, -0.25F, 0.75F, 0.0F};
-  const std::vector<Packed> position(16, Packed{0.3F, 0.6F, 0.2F, 0.0F});
+  for (Float4& v : field.vectors) v = {0.5F, -0.25F, 0.75F, 0.0F};
+  const std::vector<Float4> position(16, Float4{0.3F, 0.6F, 0.2F, 0.0F});
   Streams n(16, 0, 0, 1);
   n.axis[2].assign(16, 1.0F);
   for (const SimdTarget simd : plc::available_simd_targets()) {

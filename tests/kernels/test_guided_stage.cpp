@@ -14,7 +14,7 @@ namespace {
 
 using namespace fixtures;
 using plc::Blocks;
-using plc::Packed;
+using plc::Float4;
 using plc::SimdTarget;
 namespace kernels = plc::kernels;
 namespace scalar = plc::kernels::scalar;
@@ -27,7 +27,7 @@ constexpr uint32_t kBlocks = 240;  // more than kernels fetch ahead
 struct Stage {
   RandomRings rings = mixed_rings(kBlocks, 31);
   std::vector<float> image = random_floats(size_t{60} * 50 * 40, 0, 1, 32);
-  std::vector<Packed> laplacian, next, moved_to;
+  std::vector<Float4> laplacian, next, moved_to;
   std::vector<float> streams[21], path;
   std::vector<uint8_t> turns;
   kernels::Movement movement;

@@ -11,8 +11,8 @@
 namespace {
 
 using namespace fixtures;
+using plc::Float4;
 using plc::ImageView;
-using plc::Packed;
 using plc::SimdTarget;
 namespace kernels = plc::kernels;
 namespace scalar = plc::kernels::scalar;
@@ -32,7 +32,7 @@ struct Image {
 };
 
 // Eight voxels weighted by the opposite volumes, in double; outside, the border is replicated.
-double expected_sample(const ImageView& image, const Packed& p) {
+double expected_sample(const ImageView& image, const Float4& p) {
   const double place[3] = {double{p.x}, double{p.y}, double{p.z}};
   int32_t cell[3];
   double fraction[3];
@@ -58,9 +58,9 @@ double expected_sample(const ImageView& image, const Packed& p) {
 }
 
 // Inside, on voxels, on the border and far outside of an image of mesh extent about 40.
-std::vector<Packed> places(uint32_t count, uint32_t seed) {
+std::vector<Float4> places(uint32_t count, uint32_t seed) {
   const std::vector<float> v = random_floats(size_t{count} * 3, -10.0F, 50.0F, seed);
-  std::vector<Packed> all(count);
+  std::vector<Float4> all(count);
   for (uint32_t i = 0; i < count; ++i) {
     all[i] = {v[3 * i], v[3 * i + 1], v[3 * i + 2], 0.0F};
     if (i % 5 == 1) all[i] = {std::floor(all[i].x), std::floor(all[i].y), all[i].z, 0.0F};
@@ -76,7 +76,7 @@ TEST_CASE("sampling is trilinear between voxel centres", "[kernels]") {
   image.view.scale[2] = 0.25F;
   image.view.offset[0] = 0.5F;
   image.view.offset[1] = -3.25F;
-  const std::vector<Packed> position = places(163, 2);
+  const std::vector<Float4> position = places(163, 2);
   for (const SimdTarget simd : plc::available_simd_targets()) {
     for (const uint32_t begin : {0U, 1U, 7U, 160U}) {
       for (const uint32_t end : {163U, 162U, 161U, 160U}) {
@@ -102,7 +102,7 @@ TEST_CASE("sampling is trilinear between voxel centres", "[kernels]") {
 
 TEST_CASE("a sample on a voxel is that voxel", "[kernels]") {
   const Image image(5, 4, 3, 3);
-  std::vector<Packed> position;
+  std::vector<Float4> position;
   for (int z = 0; z < 3; ++z) {
     for (int y = 0; y < 4; ++y) {
       for (int x = 0; x < 5; ++x) {
@@ -122,7 +122,7 @@ TEST_CASE("a sample on a voxel is that voxel", "[kernels]") {
 TEST_CASE("no position makes sampling read outside the image", "[kernels]") {
   // The image fills its allocation, so that a sanitizer sees any voxel read outside of it.
   Image image(2, 2, 2, 4);
-  std::vector<Packed> position;
+  std::vector<Float4> position;
   const float inf = std::numeric_limits<float>::infinity();
   const std::vector<float> wild = {std::numeric_limits<float>::quiet_NaN(),
                                    inf,
@@ -154,7 +154,7 @@ TEST_CASE("no position makes sampling read outside the image", "[kernels]") {
 TEST_CASE("the iso-potential force is equation (7), added to what is there", "[kernels]") {
   const Image image(37, 23, 11, 5);
   const uint32_t count = 160;
-  const std::vector<Packed> position = places(count, 6);
+  const std::vector<Float4> position = places(count, 6);
   const std::vector<float> nx = random_floats(count, -1, 1, 7);
   const std::vector<float> ny = random_floats(count, -1, 1, 8);
   const std::vector<float> nz = random_floats(count, -1, 1, 9);
@@ -201,7 +201,7 @@ TEMPLATE_TEST_CASE("a typed image is sampled and pulls as the same image in floa
       const ImageView unit = image.unit_view(values);
       const uint32_t count = 320;
       // The last are all inside, so that whole vectors are.
-      std::vector<Packed> position = places(count, 12);
+      std::vector<Float4> position = places(count, 12);
       for (uint32_t i = count / 2; i < count; ++i) {
         const auto within = [](float c, int32_t size, float from) {
           return from + std::fmod(std::abs(c), static_cast<float>(size - 1));
@@ -238,7 +238,7 @@ TEST_CASE("no position makes sampling read beside typed voxels", "[kernels]") {
   const float inf = std::numeric_limits<float>::infinity();
   const std::vector<float> wild = {std::nanf(""), inf,   -inf, 3.4e38F, -3.4e38F, 2147483648.0F,
                                    -1.0F,         0.99F, 2.5F, 6.5F,    7.0F,     7.5F};
-  std::vector<Packed> position;
+  std::vector<Float4> position;
   for (const float x : wild) {
     for (const float y : wild) {
       for (const float z : wild) position.push_back({x, y, z, 0.0F});

@@ -12,7 +12,7 @@ namespace {
 
 using namespace fixtures;
 using plc::Blocks;
-using plc::Packed;
+using plc::Float4;
 using plc::SimdTarget;
 using plc::kernels::ConstFloat3s;
 using plc::kernels::Float3s;
@@ -24,12 +24,12 @@ using plc::kernels::Rk4Streams;
 namespace kernels = plc::kernels;
 namespace scalar = plc::kernels::scalar;
 
-// The streams of a step; p in packed positions too.
+// The streams of a step; p in records of four too.
 struct Particles {
   std::vector<float> p[3], v[3], f[3], s[3], d[3], a[3];
-  std::vector<Packed> start, stage;
+  std::vector<Float4> start, stage;
 
-  Particles(uint32_t count, uint32_t seed) : start(count), stage(count, Packed{7, 7, 7, 7}) {
+  Particles(uint32_t count, uint32_t seed) : start(count), stage(count, Float4{7, 7, 7, 7}) {
     for (uint32_t axis = 0; axis < 3; ++axis) {
       for (std::vector<float>* stream :
            {&p[axis], &v[axis], &f[axis], &s[axis], &d[axis], &a[axis]}) {
@@ -158,12 +158,12 @@ namespace {
 // move() with its streams.
 struct Mover {
   Particles all;
-  std::vector<Packed> moved_to;
+  std::vector<Float4> moved_to;
   std::vector<float> path;
   std::vector<uint8_t> turns;  // of all numbers, and sides
   Movement movement;
 
-  explicit Mover(uint32_t count) : all(count, 40), moved_to(count, Packed{7, 7, 7, 7}) {
+  explicit Mover(uint32_t count) : all(count, 40), moved_to(count, Float4{7, 7, 7, 7}) {
     path = random_floats(count, 0, 4, 61);
     for (uint32_t v = 0; v < count; ++v) turns.push_back(static_cast<uint8_t>(37 * v));
     for (auto& axis : all.d) axis[20] = 0.0F;

@@ -12,7 +12,7 @@
 namespace {
 
 using namespace fixtures;
-using plc::Packed;
+using plc::Float4;
 using plc::RingView;
 using plc::SimdTarget;
 namespace kernels = plc::kernels;
@@ -21,7 +21,7 @@ namespace scalar = plc::kernels::scalar;
 using Vector = std::array<double, 3>;
 
 Vector at(const RandomRings& rings, uint32_t v) {
-  const Packed& p = rings.position[v];
+  const Float4& p = rings.position[v];
   return {double{p.x}, double{p.y}, double{p.z}};
 }
 Vector operator-(const Vector& a, const Vector& b) {
@@ -88,9 +88,9 @@ TEST_CASE("the Laplacian is the mean of the ring minus the vertex", "[kernels]")
   for (const SimdTarget simd : plc::available_simd_targets()) {
     for (const auto& [begin, end] : kRanges) {
       CAPTURE(plc::simd_target_name(simd), begin, end);
-      const Packed untouched{kUntouched, kUntouched, kUntouched, kUntouched};
-      std::vector<Packed> got(rings.count(), untouched);
-      std::vector<Packed> twin = got;
+      const Float4 untouched{kUntouched, kUntouched, kUntouched, kUntouched};
+      std::vector<Float4> got(rings.count(), untouched);
+      std::vector<Float4> twin = got;
       const auto blocks = plc::Blocks::range(begin, end);
       kernels::laplacian(simd, rings.view(), rings.position.data(), blocks, got.data());
       scalar::laplacian(rings.view(), rings.position.data(), blocks, twin.data());
@@ -112,7 +112,7 @@ TEST_CASE("the Laplacian is the mean of the ring minus the vertex", "[kernels]")
 TEST_CASE("the curvature force is equation (5)", "[kernels]") {
   const RandomRings rings = mixed_rings(10, 2);
   const float alpha = -0.7F;  // a negative factor would turn the 0 of dead vertices into -0
-  std::vector<Packed> laplacian(rings.count());
+  std::vector<Float4> laplacian(rings.count());
   scalar::laplacian(rings.view(), rings.position.data(), plc::Blocks::range(0, rings.count()),
                     laplacian.data());
   std::vector<Vector> expected(rings.count());
@@ -205,8 +205,8 @@ TEST_CASE("normals and Laplacians of one walk have the bits of two, on the liste
   const RandomRings rings = mixed_rings(10, 12);
   const plc::Vector<uint32_t> list = {0, 3, 4, 5, 9};
   const plc::Blocks blocks{list.data(), list.size()};
-  const Packed untouched{kUntouched, kUntouched, kUntouched, kUntouched};
-  std::vector<Packed> expected(rings.count(), untouched);
+  const Float4 untouched{kUntouched, kUntouched, kUntouched, kUntouched};
+  std::vector<Float4> expected(rings.count(), untouched);
   Streams normal(rings.count(), kUntouched);
   scalar::laplacian(rings.view(), rings.position.data(), blocks, expected.data());
   scalar::normals(rings.view(), rings.position.data(), blocks, normal.x.data(), normal.y.data(),
@@ -215,7 +215,7 @@ TEST_CASE("normals and Laplacians of one walk have the bits of two, on the liste
   REQUIRE(expected[2 * plc::kRingLanes].w == kUntouched);
   for (const SimdTarget simd : plc::available_simd_targets()) {
     CAPTURE(plc::simd_target_name(simd));
-    std::vector<Packed> laplacian(rings.count(), untouched);
+    std::vector<Float4> laplacian(rings.count(), untouched);
     Streams got(rings.count(), kUntouched);
     kernels::normals_and_laplacian(simd, rings.view(), rings.position.data(), blocks, got.x.data(),
                                    got.y.data(), got.z.data(), laplacian.data());
@@ -231,7 +231,7 @@ TEST_CASE("the normal of a vertex seen with its ring counter-clockwise points at
   for (uint32_t k = 0; k < 4; ++k) columns[k * plc::kRingLanes] = k + 1;
   std::vector<uint16_t> valence(plc::kRingLanes, 0);
   valence[0] = 4;
-  std::vector<Packed> position(plc::kRingLanes, Packed{0, 0, 0, 0});
+  std::vector<Float4> position(plc::kRingLanes, Float4{0, 0, 0, 0});
   position[1] = {1, 0, 0, 0};
   position[2] = {0, 1, 0, 0};
   position[3] = {-1, 0, 0, 0};
@@ -344,7 +344,7 @@ TEST_CASE("edge lengths add up to the same bits for every target", "[kernels]") 
           expected += length(scaled(at(rings, u) - at(rings, v), metric));
         }
       }
-      const Packed* position = rings.position.data();
+      const Float4* position = rings.position.data();
       const double twin = scalar::edge_length_sum(rings.view(), position, metric, begin, end);
       REQUIRE(twin == Approx(expected).epsilon(1e-6));
       for (const SimdTarget simd : plc::available_simd_targets()) {
@@ -365,7 +365,7 @@ TEST_CASE("normals of a metric are those of the surface with its axes stretched"
                     to.y.data(), to.z.data());
   };
   measure(normal);
-  for (Packed& p : rings.position) p = {p.x * metric.x, p.y * metric.y, p.z * metric.z, 0};
+  for (Float4& p : rings.position) p = {p.x * metric.x, p.y * metric.y, p.z * metric.z, 0};
   measure(stretched);
   std::vector<Vector> expected(n), step(n);
   for (uint32_t v = 0; v < n; ++v) {

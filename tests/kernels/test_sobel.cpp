@@ -10,7 +10,7 @@
 namespace {
 
 using namespace fixtures;
-using plc::Packed;
+using plc::Float4;
 using plc::SimdTarget;
 namespace kernels = plc::kernels;
 namespace scalar = plc::kernels::scalar;
@@ -119,11 +119,11 @@ TEST_CASE("vectors longer than the bound keep their direction and get length one
       g[0][2] = g[1][2] = g[2][2] = 0;
       g[0][3] = 2.5F, g[1][3] = g[2][3] = 0;  // of the length of the bound itself
     }
-    std::vector<Packed> twin(count);
+    std::vector<Float4> twin(count);
     scalar::bound_vectors(g[0].data(), g[1].data(), g[2].data(), count, bound, twin.data());
     for (const SimdTarget simd : plc::available_simd_targets()) {
       CAPTURE(plc::simd_target_name(simd), count);
-      std::vector<Packed> got(count + 1, {kUntouched, kUntouched, kUntouched, kUntouched});
+      std::vector<Float4> got(count + 1, {kUntouched, kUntouched, kUntouched, kUntouched});
       kernels::bound_vectors(simd, g[0].data(), g[1].data(), g[2].data(), count, bound, got.data());
       REQUIRE(got.back().x == kUntouched);
       got.pop_back();

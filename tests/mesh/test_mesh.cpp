@@ -105,7 +105,7 @@ TEST_CASE("every stream is padded to whole blocks and starts at zero", "[mesh]")
     CHECK(reinterpret_cast<uintptr_t>(stream->x.data()) % 64 == 0);
     CHECK(stream->x[31] == 0);
   }
-  CHECK(mesh.packed.size() == 32);
+  CHECK(mesh.position.size() == 32);
   CHECK(mesh.path.size() == 32);
   CHECK(slots_are_filled(mesh));
 }
@@ -362,7 +362,7 @@ TEST_CASE("reserving makes room without adding vertices", "[mesh]") {
   mesh.reserve(1000);
   CHECK(mesh.slots() == 6);
   CHECK(mesh.create({}, {}) == 6);
-  CHECK(mesh.packed.size() >= 1000);
+  CHECK(mesh.position.size() >= 1000);
 }
 
 TEST_CASE("no id is made beyond the limit, and nothing has changed then", "[mesh]") {
@@ -428,7 +428,7 @@ TEST_CASE("a saved mesh is restored unless it has values that no mesh has", "[me
   const float beyond = 2 * plc::kReach;
   CHECK(restored([](Mesh&) {}));
   CHECK_FALSE(restored([&](Mesh& m) { m.place(7, {0, beyond, 0}); }));
-  CHECK_FALSE(restored([](Mesh& m) { m.packed[7].w = 1; }));
+  CHECK_FALSE(restored([](Mesh& m) { m.position[7].w = 1; }));
   CHECK_FALSE(restored([&](Mesh& m) { m.velocity.set(7, {-beyond, 0, 0}); }));
   CHECK_FALSE(restored([&](Mesh& m) { m.displacement.set(7, {0, 0, beyond}); }));
   CHECK_FALSE(restored([&](Mesh& m) { m.normal.set(7, {NAN, 0, 0}); }));
@@ -442,11 +442,11 @@ TEST_CASE("a renumbered mesh has room for what is created before the next renumb
   plc::Vector<uint32_t> order(mesh.slots());
   for (uint32_t i = 0; i < order.size(); ++i) order[i] = mesh.slots() - 1 - i;
   mesh.renumber(order);
-  const plc::Packed* const packed = mesh.packed.data();
+  const plc::Float4* const position = mesh.position.data();
   const float* const speeds = mesh.velocity.x.data();
   CHECK(mesh.room() >= mesh.slots() + mesh.slots() / 40);
   while (mesh.slots() < mesh.room()) mesh.create({1, 2, 3}, {});
-  CHECK(mesh.packed.data() == packed);
+  CHECK(mesh.position.data() == position);
   CHECK(mesh.velocity.x.data() == speeds);
   mesh.create({1, 2, 3}, {});
   CHECK(mesh.room() > mesh.slots());

@@ -112,14 +112,14 @@ TEST_CASE("a change of one stream changes the hash of its part and of no other",
   };
   CHECK(changed([](Mesh&) {}).empty());
   CHECK(changed([](Mesh& m) { m.delta = 0.5; }) == "counts and delta;");
-  CHECK(changed([](Mesh& m) { m.packed[7].z = 3; }) == "position;");
+  CHECK(changed([](Mesh& m) { m.position[7].z = 3; }) == "position;");
   CHECK(changed([](Mesh& m) { m.velocity.x[7] = -0.0F; }) == "velocity;");
   CHECK(changed([](Mesh& m) { m.normal.y[7] = 0.5F; }) == "normal;");
   CHECK(changed([](Mesh& m) { m.displacement.z[7] = 0.5F; }) == "displacement;");
   CHECK(changed([](Mesh& m) { m.path[7] = 0.5F; }) == "path;");
   CHECK(changed([](Mesh& m) { m.idle[7] ^= 1U; }) == "idle;");
   CHECK(changed([](Mesh& m) { m.calm[7] ^= 1U; }) == "calm;");
-  CHECK(changed([](Mesh& m) { m.stir[7] ^= 1U; }) == "stir;");
+  CHECK(changed([](Mesh& m) { m.drift[7] ^= 1U; }) == "drift;");
   CHECK(changed([](Mesh& m) { m.risk[7] ^= 1U; }) == "risk;");
   CHECK(changed([](Mesh& m) { m.operations[7] ^= 1U; }) == "operations;");
   CHECK(changed([](Mesh& m) { m.turns[7] ^= 1U; }) == "turns;");

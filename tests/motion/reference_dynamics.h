@@ -93,7 +93,7 @@ struct Image {
 
 // Pi_gradI of (8): vectors in the lengths of the forces.
 struct Gradient {
-  std::vector<plc::Packed> vectors;
+  std::vector<plc::Float4> vectors;
   plc::GradientView view() const {
     auto v = placed<plc::GradientView>();
     v.data = vectors.data();
@@ -102,7 +102,7 @@ struct Gradient {
   Point at(const Point& p) const {
     Point sum{};
     interpolate(p, [&](size_t i, double weight) {
-      const plc::Packed& g = vectors[i];
+      const plc::Float4& g = vectors[i];
       sum = sum + to_point({g.x, g.y, g.z}) * weight;
     });
     return sum;

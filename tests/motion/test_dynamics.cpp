@@ -457,7 +457,7 @@ TEST_CASE("a step has the same bits on every thread count and SIMD target", "[dy
         for (int i = 0; i < 5; ++i) step(mesh, dynamics, image);
         for (int i = 0; i < 3; ++i) REQUIRE(dynamics.step(guided, seconds).ok());
         std::vector<float> result{static_cast<float>(dynamics.energy())};
-        for (uint32_t v = 0; v < mesh.slots(); ++v) result.push_back(mesh.packed[v].x);
+        for (uint32_t v = 0; v < mesh.slots(); ++v) result.push_back(mesh.position[v].x);
         results.push_back(result);
       }
     }

@@ -16,9 +16,9 @@ using namespace reference;  // operators
 
 constexpr float kMass = 1.5F, kDamping = 0.8F;
 
-// Packed positions and unit normals around the origin, not in any order of space.
+// Position positions and unit normals around the origin, not in any order of space.
 struct Vertices {
-  std::vector<plc::Packed> at;
+  std::vector<plc::Float4> at;
   Streams3 velocity, normal, force;
 
   explicit Vertices(uint32_t count) : at(count) {
@@ -76,7 +76,7 @@ Point expected_pull(const UserConstraints& user, Vec3 position, Vec3 velocity, V
   return n * (pull / most - damping * reference::dot(to_point(velocity), n));
 }
 
-Vec3 at(const plc::Packed& p) {
+Vec3 at(const plc::Float4& p) {
   return {p.x, p.y, p.z};
 }
 
@@ -332,7 +332,7 @@ TEST_CASE("the user's force is asked at every stage and added to the others",
   UserConstraints none, user;
   int calls = 0;
   std::vector<float> heights;
-  user.force = [&](const Mesh& mesh, const plc::Packed* position, Streams3& force) {
+  user.force = [&](const Mesh& mesh, const plc::Float4* position, Streams3& force) {
     ++calls;
     heights.push_back(position[0].z);
     for (uint32_t v = 0; v < mesh.slots(); ++v) {
@@ -364,7 +364,7 @@ TEST_CASE("the error of the user's force ends the step, and it is not asked agai
   fill_sphere(mesh);
   UserConstraints user;
   int calls = 0;
-  user.force = [&](const Mesh&, const plc::Packed*, Streams3&) {
+  user.force = [&](const Mesh&, const plc::Float4*, Streams3&) {
     ++calls;
     return plc::Status(plc::ErrorCode::kCancelled, "enough");
   };

@@ -15,7 +15,7 @@ namespace {
 using namespace fixtures;
 using plc::Buffer;
 using plc::ErrorCode;
-using plc::Packed;
+using plc::Float4;
 using plc::PyramidLevel;
 using plc::SimdTarget;
 using plc::Status;
@@ -53,9 +53,9 @@ PyramidLevel sampled_level(const Dims& dims, const Value& value) {
   return level_of(dims, values);
 }
 
-std::vector<Packed> must_build(const PyramidLevel& level, const Vector& voxel_length, double bound,
+std::vector<Float4> must_build(const PyramidLevel& level, const Vector& voxel_length, double bound,
                                const plc::Executor& executor, SimdTarget simd) {
-  Buffer<Packed> gradient;
+  Buffer<Float4> gradient;
   const Status status = plc::build_gradient(level, voxel_length, bound, executor, simd, gradient);
   CAPTURE(status.message());
   REQUIRE(status.ok());
@@ -93,7 +93,7 @@ Vector expected_gradient(const PyramidLevel& level, const Vector& voxel_length, 
 void require_definition(const Dims& dims, const Vector& voxel_length, double bound) {
   const PyramidLevel level = random_level(dims, 11);
   for (const SimdTarget simd : plc::available_simd_targets()) {
-    const std::vector<Packed> got = must_build(level, voxel_length, bound, kSerial, simd);
+    const std::vector<Float4> got = must_build(level, voxel_length, bound, kSerial, simd);
     size_t i = 0;
     for (int64_t z = 0; z < dims[2]; ++z) {
       for (int64_t y = 0; y < dims[1]; ++y) {
@@ -113,7 +113,7 @@ void require_definition(const Dims& dims, const Vector& voxel_length, double bou
 
 Status build_status(const Vector& voxel_length, double bound) {
   const PyramidLevel level = random_level({3, 3, 3}, 1);
-  Buffer<Packed> gradient(5);  // of an earlier use
+  Buffer<Float4> gradient(5);  // of an earlier use
   Status status =
       plc::build_gradient(level, voxel_length, bound, kSerial, SimdTarget::kScalar, gradient);
   if (!status.ok()) REQUIRE(gradient.empty());
@@ -136,11 +136,11 @@ TEST_CASE("the gradient of a linear ramp is its slope per unit", "[pyramid]") {
   const PyramidLevel level = sampled_level(
       {11, 9, 7}, [](double x, double y, double z) { return 0.5 + x / 64 - y / 32 + z / 16; });
   for (const SimdTarget simd : plc::available_simd_targets()) {
-    const std::vector<Packed> got = must_build(level, {1, 2, 4}, 1.0 / 16, kSerial, simd);
+    const std::vector<Float4> got = must_build(level, {1, 2, 4}, 1.0 / 16, kSerial, simd);
     for (size_t z = 1; z < 6; ++z) {
       for (size_t y = 1; y < 8; ++y) {
         for (size_t x = 1; x < 10; ++x) {
-          const Packed& g = got[x + 11 * (y + 9 * z)];
+          const Float4& g = got[x + 11 * (y + 9 * z)];
           REQUIRE(std::array<float, 3>{g.x, g.y, g.z} ==
                   std::array<float, 3>{0.25F, -0.25F, 0.25F});
         }
@@ -154,7 +154,7 @@ TEST_CASE("the gradient of a linear ramp is its slope per unit", "[pyramid]") {
 TEST_CASE("a steep ramp has length one in its own direction", "[pyramid]") {
   const PyramidLevel level =
       sampled_level({5, 5, 5}, [](double x, double y, double) { return (3 * x + 4 * y) / 28; });
-  const Packed g = must_build(level, {1, 1, 1}, 0.01, kSerial, plc::best_simd_target())[62];
+  const Float4 g = must_build(level, {1, 1, 1}, 0.01, kSerial, plc::best_simd_target())[62];
   REQUIRE(g.x == Approx(0.6F));
   REQUIRE(g.y == Approx(0.8F));
   REQUIRE(g.z == Approx(0.0F).margin(1e-6));
@@ -168,7 +168,7 @@ TEST_CASE("the gradient has the same bits for every target and any number of thr
   for (const SimdTarget simd : plc::available_simd_targets()) {
     for (const unsigned threads : {1U, 2U, 3U}) {
       CAPTURE(plc::simd_target_name(simd), threads);
-      const std::vector<Packed> got =
+      const std::vector<Float4> got =
           must_build(level, {1, 1.1, 2.3}, 0.2, ThreadExecutor(threads), simd);
       REQUIRE(first_difference(flatten(got), expected) == -1);
     }
@@ -181,7 +181,7 @@ TEST_CASE("the gradient force draws vertices to the ridge of a shell from both s
   const PyramidLevel level = sampled_level({41, 41, 41}, [](double x, double y, double z) {
     return std::max(0.0, 1 - std::abs(samples::norm(x - 20, y - 20, z - 20) - 12) / 6);
   });
-  const std::vector<Packed> gradient =
+  const std::vector<Float4> gradient =
       must_build(level, {1, 1, 1}, 0.5, kSerial, plc::best_simd_target());
   plc::GradientView view{gradient.data(), {41, 41, 41}, {1, 1, 1}, {0, 0, 0}};
   const uint32_t count = 160;
@@ -190,7 +190,7 @@ TEST_CASE("the gradient force draws vertices to the ridge of a shell from both s
     n[a] = random_floats(count, -1, 1, 40 + a);
     f[a].assign(count, 0.0F);
   }
-  std::vector<Packed> position(count);
+  std::vector<Float4> position(count);
   std::vector<float> radius(count);
   for (uint32_t i = 0; i < count; ++i) {
     const float length = std::hypot(n[0][i], n[1][i], n[2][i]);
@@ -231,7 +231,7 @@ TEST_CASE("a tiny or huge bound leaves no vector that is not finite", "[pyramid]
   for (size_t i = 0; i < 20; ++i) level.values[i] = 0.5F;
   for (const double bound : {1e-300, 1e-30, 1e30, 1e300}) {
     for (const double length : {1e-300, 1.0, 1e300}) {
-      const std::vector<Packed> got =
+      const std::vector<Float4> got =
           must_build(level, {1, length, 1}, bound, kSerial, plc::best_simd_target());
       for (const float v : flatten(got)) REQUIRE(std::abs(v) < 1.000001F);
     }
@@ -243,7 +243,7 @@ TEST_CASE("a gradient beyond the memory is refused, not thrown", "[pyramid]") {
   PyramidLevel level = random_level({2, 2, 2}, 1);
   level.dims = {256, 256, 256};
   level.values.resize(size_t{1} << 24);
-  Buffer<Packed> gradient;
+  Buffer<Float4> gradient;
   const MemoryLimit limit(size_t{64} << 20);  // it takes 256 MB
   const Status status =
       plc::build_gradient(level, {1, 1, 1}, 1, kSerial, SimdTarget::kScalar, gradient);

@@ -62,7 +62,7 @@ TEST_CASE("voxels up to 1 : 1 : 8 leave the mesh in millimetres as fine as the p
 TEST_CASE("a surface that its forces drive out of the image for ever is an error that says so",
           "[cost]") {
   samples::Run run = ball();
-  run.recovery.force = [](int, const plc::MeshSpace&, const plc::Mesh& mesh, const plc::Packed*,
+  run.recovery.force = [](int, const plc::MeshSpace&, const plc::Mesh& mesh, const plc::Float4*,
                           plc::Streams3& force) {
     for (uint32_t v = 0; v < mesh.slots(); ++v) force.set(v, mesh.normal.at(v) * 2.0F);
     return plc::Status();

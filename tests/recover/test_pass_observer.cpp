@@ -55,9 +55,9 @@ TEST_CASE("every pass of an iteration is seen, in its order", "[pass_observer]")
     if (step.iteration == kIteration) passes.push_back(step.pass);
   }
   CHECK(passes == std::vector<std::string>{
-                      "sleep", "normals", "stage 1", "laplacian 2", "stage 2", "laplacian 3",
-                      "stage 3", "laplacian 4", "stage 4 and move", "energy", "calm",
-                      "due, hash, surroundings", "risk", "motion guard", "resolution"});
+                      "sleep", "begin", "normals", "stage 1", "laplacian 2", "stage 2",
+                      "laplacian 3", "stage 3", "laplacian 4", "stage 4 and move", "calm", "due",
+                      "hash", "surroundings, folds", "risk", "motion guard", "resolution"});
   CHECK(trace.steps.front().pass == "start");
   CHECK(trace.steps[trace.steps.size() - 2].pass == "ids");
   CHECK(trace.steps.back().pass == "embedded");
@@ -81,11 +81,11 @@ TEST_CASE("two runs of the same differ nowhere", "[pass_observer]") {
 TEST_CASE("one bit of one vertex is named by iteration, pass and stream", "[pass_observer]") {
   const Trace sound = traced();
   const auto velocity = [](Mesh& mesh) { flip_bit(mesh.velocity.x[40]); };
-  for (const std::string pass : {"sleep", "stage 2", "energy", "motion guard", "resolution"}) {
+  for (const std::string pass : {"sleep", "stage 2", "hash", "motion guard", "resolution"}) {
     CHECK(samples::first_difference(sound, spoilt(pass, velocity)) ==
           "iteration 5, pass " + pass + ": velocity");
   }
-  const auto position = [](Mesh& mesh) { flip_bit(mesh.packed[40].y); };
+  const auto position = [](Mesh& mesh) { flip_bit(mesh.position[40].y); };
   CHECK(samples::first_difference(sound, spoilt("laplacian 3", position)) ==
         "iteration 5, pass laplacian 3: position");
   const auto slower = [](Mesh& mesh) { mesh.calm[40] ^= 1U; };
@@ -94,7 +94,7 @@ TEST_CASE("one bit of one vertex is named by iteration, pass and stream", "[pass
 
 TEST_CASE("what a pass makes of a difference is seen in what it writes", "[pass_observer]") {
   const Trace sound = traced();
-  const Trace other = spoilt("sleep", [](Mesh& mesh) { flip_bit(mesh.packed[40].x, 16); });
+  const Trace other = spoilt("sleep", [](Mesh& mesh) { flip_bit(mesh.position[40].x, 16); });
   const auto differing = [&](const std::string& pass) {
     return samples::differing_parts(step_at(sound, pass), step_at(other, pass));
   };

@@ -18,15 +18,43 @@ using plc::OperationCounts;
 using plc::Resolution;
 using samples::Soup;
 
+struct Resolver {
+  explicit Resolver(Mesh& mesh, const plc::Executor& executor = samples::kSerial,
+                    plc::SimdTarget simd = plc::best_simd_target())
+      : detection(mesh, executor, simd), resolution(mesh, executor, simd, detection) {
+    resolution.restart();
+  }
+  const plc::Vector<uint32_t>& search_due() {
+    detection.list_due();
+    return search();
+  }
+  const plc::Vector<uint32_t>& search_all() {
+    detection.list_all();
+    return search();
+  }
+  OperationCounts run(uint32_t iteration) {
+    OperationCounts counts;
+    resolution.run(iteration, {}, counts);
+    return counts;
+  }
+
+  plc::Detection detection;
+  Resolution resolution;
+
+ private:
+  const plc::Vector<uint32_t>& search() {
+    detection.update_hash();
+    detection.search();
+    return detection.due();
+  }
+};
+
 // One pass over all vertices.
 OperationCounts resolve(Mesh& mesh, const plc::Executor& executor = samples::kSerial,
                         uint32_t iteration = 100) {
-  Resolution resolution(mesh, executor, plc::best_simd_target());
-  resolution.restart();
-  resolution.take_due(true);
-  OperationCounts counts;
-  resolution.run(iteration, counts);
-  return counts;
+  Resolver resolver(mesh, executor);
+  resolver.search_all();
+  return resolver.run(iteration);
 }
 
 int64_t operations(const OperationCounts& n) {
@@ -146,12 +174,10 @@ TEST_CASE("a pass has the same result for any executor and SIMD target", "[resol
       for (const plc::SimdTarget simd : plc::available_simd_targets()) {
         Mesh mesh;
         samples::fill_mesh(mesh, spheres(0.12), delta);
-        Resolution resolution(mesh, *executor, simd);
-        resolution.restart();
+        Resolver resolver(mesh, *executor, simd);
         for (uint32_t iteration = 1; iteration <= 3; ++iteration) {
-          resolution.take_due(true);
-          OperationCounts counts;
-          resolution.run(iteration, counts);
+          resolver.search_all();
+          resolver.run(iteration);
         }
         hashes.push_back(plc::state_hash(mesh));
       }
@@ -163,30 +189,28 @@ TEST_CASE("a pass has the same result for any executor and SIMD target", "[resol
 TEST_CASE("vertices are due when they have moved far, waited long or are awake", "[resolution]") {
   Mesh mesh;
   samples::fill_mesh(mesh, samples::sphere(3), kDelta);
-  Resolution resolution(mesh, samples::kSerial, plc::best_simd_target());
-  resolution.restart();
-  CHECK(resolution.take_due(false).size() == mesh.slots());  // new ones are awake
-  CHECK(resolution.take_due(false).empty());
+  Resolver resolver(mesh);
+  CHECK(resolver.search_due().size() == mesh.slots());  // new ones are awake
+  CHECK(resolver.search_due().empty());
   const auto far = plc::kCheckPath * static_cast<float>(kDelta);
   mesh.path[7] = far;
   mesh.path[8] = std::nextafter(far, 0.0F);
   mesh.wake(90);
-  CHECK(resolution.take_due(false) == plc::Vector<uint32_t>{7, 90});
+  CHECK(resolver.search_due() == plc::Vector<uint32_t>{7, 90});
   CHECK(mesh.path[7] == 0);
   CHECK(mesh.path[8] > 0);
   CHECK(mesh.idle[90] == 0);
-  CHECK(resolution.take_due(true).size() == mesh.slots());
-  for (int i = 0; i < plc::kCheckPeriod; ++i) CHECK(resolution.take_due(false).empty());
-  CHECK(resolution.take_due(false).size() == mesh.slots());
+  CHECK(resolver.search_all().size() == mesh.slots());
+  for (int i = 0; i < plc::kCheckPeriod; ++i) CHECK(resolver.search_due().empty());
+  CHECK(resolver.search_due().size() == mesh.slots());
 }
 
 TEST_CASE("deleted vertices are never due", "[resolution]") {
   Mesh mesh;
   samples::fill_mesh(mesh, spheres(0.5), kDelta);
   for (uint32_t v = 0; v < 258; ++v) mesh.destroy(v);
-  Resolution resolution(mesh, samples::kSerial, plc::best_simd_target());
-  resolution.restart();
-  const auto& due = resolution.take_due(true);
+  Resolver resolver(mesh);
+  const auto& due = resolver.search_all();
   CHECK(due.size() == 258);
   CHECK(due.front() == 258);
 }
@@ -194,29 +218,23 @@ TEST_CASE("deleted vertices are never due", "[resolution]") {
 TEST_CASE("violations of vertices that are not due wait", "[resolution]") {
   Mesh mesh;
   samples::fill_mesh(mesh, samples::sphere(3), kDelta);
-  Resolution resolution(mesh, samples::kSerial, plc::best_simd_target());
-  resolution.restart();
-  resolution.take_due(true);
+  Resolver resolver(mesh);
+  resolver.search_all();
   mesh.place(5, mesh.at(mesh.neighbor(5, 0)) * 1.01F);
-  OperationCounts counts;
-  CHECK(resolution.take_due(false).empty());
-  resolution.run(1, counts);
-  CHECK(operations(counts) == 0);
+  CHECK(resolver.search_due().empty());
+  CHECK(operations(resolver.run(1)) == 0);
   mesh.wake(5);
-  CHECK(resolution.take_due(false).size() == 1);
-  resolution.run(2, counts);
-  CHECK(operations(counts) > 0);
+  CHECK(resolver.search_due().size() == 1);
+  CHECK(operations(resolver.run(2)) > 0);
   CHECK(plc::broken_invariant(mesh) == "");
 }
 
 TEST_CASE("long edges are not split where the halves would meet the surface", "[resolution]") {
   Mesh mesh;
   samples::fill_mesh(mesh, samples::flat_tetrahedron(), 0.8);
-  Resolution resolution(mesh, samples::kSerial, plc::best_simd_target());
-  resolution.restart();
-  resolution.take_due(true);
-  OperationCounts counts;
-  resolution.run(1, counts);
+  Resolver resolver(mesh);
+  resolver.search_all();
+  const OperationCounts counts = resolver.run(1);
   CHECK(counts.refused > 0);
   CHECK(plc::broken_invariant(mesh) == "");
   CHECK(samples::meeting_count(mesh) == 0);
@@ -231,15 +249,13 @@ TEST_CASE("what the guard refuses is counted, left as it was and stays due", "[r
     Mesh mesh;
     samples::fill_mesh(mesh, soup, 0.2);
     if (samples::meeting_count(mesh) != 0) continue;
-    Resolution resolution(mesh, samples::kSerial, plc::best_simd_target());
-    resolution.restart();
-    resolution.take_due(true);
-    OperationCounts counts;
-    resolution.run(1, counts);
+    Resolver resolver(mesh);
+    resolver.search_all();
+    const OperationCounts counts = resolver.run(1);
     if (counts.refused == 0) continue;
     refusals += counts.refused;
     // The next iteration looks at some of them again.
-    CHECK_FALSE(resolution.take_due(false).empty());
+    CHECK_FALSE(resolver.search_due().empty());
   }
   CHECK(refusals > 0);
 }

@@ -28,9 +28,9 @@ inline int64_t first_difference(const std::vector<float>& a, const std::vector<f
   return -1;
 }
 
-inline std::vector<float> flatten(const std::vector<plc::Packed>& records) {
+inline std::vector<float> flatten(const std::vector<plc::Float4>& records) {
   std::vector<float> all;
-  for (const plc::Packed& r : records) all.insert(all.end(), {r.x, r.y, r.z, r.w});
+  for (const plc::Float4& r : records) all.insert(all.end(), {r.x, r.y, r.z, r.w});
   return all;
 }
 
@@ -71,7 +71,7 @@ class RandomRings {
         if (u != v && valence_[u] != 0) rings[v].push_back(u);
       }
     }
-    for (plc::Packed& p : position) {
+    for (plc::Float4& p : position) {
       for (float* c : {&p.x, &p.y, &p.z}) *c = random_float(random, -40.0F, 250.0F);
       p.w = 0;
     }
@@ -105,7 +105,7 @@ class RandomRings {
 
  public:
   std::vector<plc::Vector<uint32_t>> rings;
-  std::vector<plc::Packed> position;
+  std::vector<plc::Float4> position;
 };
 
 // Dead vertices, common valences and long tails side by side.

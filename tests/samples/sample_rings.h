@@ -14,7 +14,7 @@ struct Rings {
   plc::Vector<uint32_t> columns;
   std::vector<uint16_t> valence;
   plc::Vector<uint32_t> tail;
-  std::vector<plc::Packed> positions;
+  std::vector<plc::Float4> positions;
 
   plc::RingView view() const { return {columns.data(), valence.data(), tail.data()}; }
   uint32_t slots() const { return static_cast<uint32_t>(positions.size()); }

@@ -24,7 +24,7 @@ inline const plc::SerialExecutor kSerial;
 inline void fill_mesh(plc::Mesh& mesh, const Soup& soup, double delta) {
   mesh.clear();
   const Rings rings = rings_of(soup);
-  for (const plc::Packed& p : rings.positions) mesh.create({p.x, p.y, p.z}, {});
+  for (const plc::Float4& p : rings.positions) mesh.create({p.x, p.y, p.z}, {});
   for (uint32_t v = 0; v < rings.slots(); ++v) {
     plc::Neighbors ring;
     for (uint32_t k = 0; k < rings.valence[v]; ++k) ring.push_back(rings.view().slot(v, k));
@@ -129,7 +129,7 @@ inline std::vector<FaceIds> sorted_faces(const plc::Mesh& mesh) {
 inline double volume(const plc::Mesh& mesh) {
   const plc::Vector<uint32_t> abc = mesh.faces();
   const auto coordinates = [&](uint32_t v) {
-    const plc::Packed& p = mesh.packed[v];
+    const plc::Float4& p = mesh.position[v];
     return std::array<double, 3>{p.x, p.y, p.z};
   };
   double six = 0;

@@ -257,12 +257,6 @@ class Declarations {
     flag(
         "--no-sleeping", [&p = p_] { p.sleeping = 0; },
         "Move all vertices in every iteration, those too where nothing has moved for long");
-    flag(
-        "--check-all", [&p = p_] { p.slow_vertices = 0; },
-        "Check the constraints of all vertices in every iteration, also of slow ones");
-    flag(
-        "--no-renumbering", [&p = p_] { p.renumbering = 0; },
-        "Do not number vertices along a space-filling curve: slower, for comparisons");
   }
 
   void machine() {

@@ -47,8 +47,6 @@ Json parameters_json(const plc_parameters& p, ExtractOptions options) {
           {"max_iterations", p.max_iterations},
           {"late_bubbles", p.late_bubbles != 0},
           {"sleeping", p.sleeping != 0},
-          {"slow_vertices", p.slow_vertices != 0},
-          {"renumbering", p.renumbering != 0},
           {"space", name_of(options.space, kSpaces)},
           {"nifti_frame", name_of(options.nifti_frame, kNiftiFrames)}};
 }

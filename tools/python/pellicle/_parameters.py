@@ -82,10 +82,6 @@ class Parameters:
         Bubbles start in what a level's surface has missed; False: as the paper.
     sleeping : bool
         Regions where nothing has moved for long are left alone until something near them moves.
-    slow_vertices : bool
-        Constraints of a vertex are checked when it has moved far enough, or after a while.
-    renumbering : bool
-        Vertices are numbered along a space-filling curve; False is slower, for comparisons.
     """
 
     iso: float | None = _D["iso"]
@@ -120,8 +116,6 @@ class Parameters:
     max_iterations: int = _D["max_iterations"]
     late_bubbles: bool = _D["late_bubbles"]
     sleeping: bool = _D["sleeping"]
-    slow_vertices: bool = _D["slow_vertices"]
-    renumbering: bool = _D["renumbering"]
 
     def replace(self, **changes: Any) -> Parameters:
         """These parameters but for some.

@@ -69,8 +69,6 @@ void visit(plc_parameters& p, Visitor& v) {
   v.count("max_iterations", p.max_iterations);
   v.flag("late_bubbles", p.late_bubbles);
   v.flag("sleeping", p.sleeping);
-  v.flag("slow_vertices", p.slow_vertices);
-  v.flag("renumbering", p.renumbering);
 }
 
 class Writer {

@@ -1,0 +1,50 @@
+#include "engine/detect/detection.h"
+
+#include "engine/base/constants.h"
+
+namespace plc {
+
+Detection::Detection(Mesh& mesh, const Executor& executor, SimdTarget simd)
+    : mesh_(mesh),
+      executor_(executor),
+      due_(mesh, executor),
+      hash_(simd),
+      surroundings_(mesh, executor, simd) {}
+
+void Detection::list_due() {
+  due_.list_due();
+  all_due_ = false;
+}
+
+void Detection::list_due(const Vector<uint32_t>& awake) {
+  due_.list_due(awake);
+  all_due_ = false;
+}
+
+void Detection::list_all() {
+  due_.list_all();
+  all_due_ = true;
+}
+
+// A vertex is due before it has moved farther than the slack, and is entered anew then.
+void Detection::update_hash() {
+  const bool many = due().size() + hash_.inserted() > mesh_.slots() / kHashInsertions;
+  if (all_due_ || many || !hash_valid_) {
+    const auto delta = static_cast<float>(mesh_.delta);
+    hash_.build(mesh_, kHashCell * delta, executor_, kHashSlack * delta);
+    hash_valid_ = true;
+    return;
+  }
+  hash_.insert(mesh_, due(), executor_);
+}
+
+void Detection::search_near_all() {
+  list_all();
+  update_hash();
+  // Every vertex has just been entered where it is.
+  hash_.set_slack(0);
+  surroundings_.search_near(due(), hash_);
+  hash_.set_slack(kHashSlack * static_cast<float>(mesh_.delta));
+}
+
+}  // namespace plc

@@ -1,0 +1,53 @@
+// Which constraints of 3.2 are to be checked, and what the check needs to know: the vertices that
+// are due by the slow-vertex rule (3.6), the hash, and what is around those vertices. Asked by the
+// motion guard and by the resolution.
+#pragma once
+#include "engine/detect/due_vertices.h"
+#include "engine/detect/spatial_hash.h"
+#include "engine/detect/surroundings.h"
+#include "engine/mesh/mesh.h"
+#include "kernels/simd.h"
+#include "pyramid/executor.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+class Detection {
+ public:
+  Detection(Mesh& mesh, const Executor& executor, SimdTarget simd);
+
+  // New ids, new level: everything that is known about single vertices is forgotten.
+  void restart() { hash_valid_ = false; }
+
+  // Three steps, in this order. First the vertices that are due are listed, of all or of those of
+  // these blocks of kRingLanes, ascending (sleep.h), or every vertex is; their periods start anew.
+  void list_due();
+  void list_due(const Vector<uint32_t>& awake);
+  void list_all();
+  // Enters them where they are now.
+  void update_hash();
+  // What is around them.
+  void search() { surroundings_.search(due(), hash_); }
+
+  // The three for the constraints of all vertices only: nothing has moved, or will be asked of the
+  // motion guard.
+  void search_near_all();
+
+  // Ascending.
+  const Vector<uint32_t>& due() const { return due_.list(); }
+  const Surroundings& surroundings() const { return surroundings_; }
+  // Holds every living vertex; who moves, makes or deletes one tells it.
+  SpatialHash& hash() { return hash_; }
+  const SpatialHash& hash() const { return hash_; }
+
+ private:
+  Mesh& mesh_;
+  const Executor& executor_;
+  DueVertices due_;
+  bool all_due_ = false;
+  SpatialHash hash_;
+  bool hash_valid_ = false;
+  Surroundings surroundings_;
+};
+
+}  // namespace plc
