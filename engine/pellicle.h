@@ -239,7 +239,8 @@ typedef enum plc_anisotropy PLC_INT {
   PLC_ANISOTROPY_PHYSICAL = 1, /* method 1 of 4.4: the mesh lives in mm; coarser than the
                                   shortest side of a voxel where one has more than 8 cubes of it */
   PLC_ANISOTROPY_VOXEL = 2,    /* method 2 of 4.4: the mesh lives in voxel proportions */
-  PLC_ANISOTROPY_METRIC = 3    /* method 3 of 4.4: in those of each level, the forces in mm */
+  PLC_ANISOTROPY_METRIC = 3    /* method 3 of 4.4: in those of each level, the forces in mm;
+                                  may keep a level from rest */
 } plc_anisotropy;
 
 #define PLC_MAX_LEVELS 32

@@ -9,8 +9,9 @@
 // left only become fewer while the level lasts; one that two merge into has no more left than
 // either, one between two others no more than the mean of theirs. What moves for ever within an
 // image turns for ever, so all of it freezes. Not covered is what makes new vertices with turns
-// left for ever: forces along the surface (beta_gradI) carry vertices from where they are made to
-// where they are merged. --max-iterations ends that.
+// left for ever: what goes along the surface carries vertices from where they are made to where
+// they are merged. That is beta_gradI, and in a stretched metric every movement along the normals
+// of the metric. --max-iterations ends that.
 //
 // What has turned kFreeTurns times is not cut any more, and what is frozen not joined
 // (transform/candidate.h): thin parts that break and grow again end as one piece.

@@ -92,7 +92,8 @@ void choose_rest(Case& c, Random& random) {
   p.spring = defaults.spring;
   p.attraction = defaults.attraction;
   p.gradient = std::abs(p.gradient);
-  p.gradient_tangent = 0;  // turns.h
+  p.gradient_tangent = 0;  // turns.h, and below
+  if (p.anisotropy == PLC_ANISOTROPY_METRIC) p.anisotropy = PLC_ANISOTROPY_VOXEL;
   p.mass = defaults.mass;
   p.damping = defaults.damping;
   p.time_step = defaults.time_step;
