@@ -81,7 +81,8 @@ void choose_model(Case& c) {
 }
 
 // Of thin and noisy objects, too: what is drawn stays, how the surface moves over it is as shipped.
-// Nobody else pulls at it, or ends it before it rests.
+// Nobody else pulls at it, or ends it before it rests: one level in a thousand takes more
+// iterations than are shipped.
 void choose_rest(Case& c, Random& random) {
   plc_parameters defaults;
   plc_parameters_defaults(&defaults);
@@ -92,8 +93,7 @@ void choose_rest(Case& c, Random& random) {
   p.spring = defaults.spring;
   p.attraction = defaults.attraction;
   p.gradient = std::abs(p.gradient);
-  p.gradient_tangent = 0;  // turns.h, and below
-  if (p.anisotropy == PLC_ANISOTROPY_METRIC) p.anisotropy = PLC_ANISOTROPY_VOXEL;
+  p.gradient_tangent = 0;  // turns.h
   p.mass = defaults.mass;
   p.damping = defaults.damping;
   p.time_step = defaults.time_step;
@@ -101,7 +101,7 @@ void choose_rest(Case& c, Random& random) {
   p.bound = defaults.bound;
   p.epsilon = defaults.epsilon;
   p.calm_speed = defaults.calm_speed;
-  p.max_iterations = defaults.max_iterations;
+  p.max_iterations = 4 * defaults.max_iterations;
   p.late_bubbles = p.sleeping = 1;
   c.force = UserForce::kNone;
   c.attachments.clear();
