@@ -292,6 +292,29 @@ typedef struct plc_parameters {
 
 PLC_API void plc_parameters_defaults(plc_parameters* parameters);
 
+typedef enum plc_parameter_kind PLC_INT {
+  PLC_PARAMETER_REAL = 0,  /* double */
+  PLC_PARAMETER_COUNT = 1, /* int */
+  PLC_PARAMETER_FLAG = 2,  /* int, 0 or 1 */
+  PLC_PARAMETER_CHOICE = 3 /* an enumeration */
+} plc_parameter_kind;
+
+/* A field of plc_parameters, for forms, bindings and files of settings. */
+typedef struct plc_parameter_info {
+  const char* name; /* the field's */
+  plc_parameter_kind kind;
+  size_t offset; /* of the field, in bytes */
+  int count;     /* values side by side: 3 of bubbles, PLC_MAX_LEVELS of level_iso, else 1 */
+  double value;  /* the default, of each; NAN, and -1 of levels: derived from the image */
+  double lowest, highest;   /* what is valid, both included; NAN is where it is the default */
+  const char* range;        /* the same in words, as in "must be 0 .. 1e6" */
+  const char* const* words; /* CHOICE: the names of the values from lowest to highest; else NULL */
+} plc_parameter_info;
+
+/* The fields in their order, from 0; NULL where there are no more. They live as long as the
+ * library; any thread may ask. */
+PLC_API const plc_parameter_info* plc_parameter_at(int index);
+
 typedef struct plc_progress {
   size_t struct_size;
   int level;     /* h of the image I_h in which the mesh evolves; counts down to 0 */

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <vector>
 
+#include "engine/api/parameter_list.h"
 #include "engine/base/blocks.h"
 #include "engine/base/fnv.h"
 
@@ -77,19 +78,8 @@ uint64_t frame_hash(const Frame& frame) {
 
 uint64_t parameters_hash(const plc_parameters& p) {
   Fnv hash;
-  for (const double x :
-       {p.iso, p.window_low, p.window_high, p.pad_value, p.feature_sigma, p.reduction, p.curvature,
-        p.spring, p.rest_length_value, p.attraction, p.gradient, p.gradient_tangent,
-        p.gradient_bound, p.mass, p.damping, p.time_step, p.max_move, p.epsilon, p.calm_speed}) {
-    hash.add(x);
-  }
-  for (int h = 0; h < p.level_iso_count; ++h) hash.add(p.level_iso[h]);
-  for (const int n :
-       {p.inside_below, p.level_iso_count, static_cast<int>(p.feature), p.levels,
-        static_cast<int>(p.init), p.bubbles[0], p.bubbles[1], p.bubbles[2],
-        static_cast<int>(p.rest_length), static_cast<int>(p.force), static_cast<int>(p.bound),
-        static_cast<int>(p.anisotropy), p.max_iterations, p.late_bubbles, p.sleeping}) {
-    hash.add(static_cast<uint32_t>(n));
+  for (const plc_parameter_info& info : parameter_list()) {
+    for (int i = 0; i < given_values(p, info); ++i) hash.add(parameter_value(p, info, i));
   }
   return hash.value();
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "engine/api/parameter_list.h"
 #include "engine/base/constants.h"
 #include "pyramid/window.h"
 
@@ -21,68 +22,23 @@ Status bad(const std::string& name, double value, const std::string& expected) {
   return {ErrorCode::kInvalidArgument, name + " " + text(value) + ": must be " + expected};
 }
 
-struct Range {
-  const char* name;
-  double value;
-  bool valid;
-  const char* expected;
-};
-
-Status check_ranges(std::initializer_list<Range> ranges) {
-  for (const Range& r : ranges) {
-    if (!r.valid) return bad(r.name, r.value, r.expected);
+// Every value of every field within its range.
+Status check_ranges(const plc_parameters& p) {
+  for (const plc_parameter_info& info : parameter_list()) {
+    for (int i = 0; i < given_values(p, info); ++i) {
+      const double value = parameter_value(p, info, i);
+      if (value >= info.lowest && value <= info.highest) continue;
+      if (std::isnan(value) && std::isnan(info.value)) continue;
+      std::string name = info.name;
+      std::replace(name.begin(), name.end(), '_', ' ');
+      return bad(name, value, info.range);
+    }
   }
   return {};
 }
 
 // On a head CT the soft tissue around the bone fills the coarse levels below 1/8.
 constexpr double kLevelIsoMargin = 0.25;
-
-// Far beyond any use; keeps every product of coefficients within floats.
-constexpr double kMaxCoefficient = 1e6;
-
-bool coefficient(double x) {
-  return x >= 0 && x <= kMaxCoefficient;
-}
-bool positive(double x) {
-  return x >= 1e-6 && x <= kMaxCoefficient;
-}
-
-Status check_levels(const plc_parameters& p) {
-  if (p.levels < -1 || p.levels >= PLC_MAX_LEVELS) {
-    return bad("levels", p.levels, "0 .. " + std::to_string(PLC_MAX_LEVELS - 1));
-  }
-  if (!(p.reduction > 1 && p.reduction <= 2)) {
-    return bad("reduction", p.reduction, "above 1 and at most 2");
-  }
-  if (p.level_iso_count < 0 || p.level_iso_count > PLC_MAX_LEVELS ||
-      (p.level_iso_count > 0 && p.levels >= 0 && p.level_iso_count != p.levels + 1)) {
-    return {ErrorCode::kInvalidArgument,
-            "level iso-values: " + std::to_string(p.level_iso_count) + " given, " +
-                std::to_string(std::max(p.levels, 0) + 1) + " expected (one per level)"};
-  }
-  return {};
-}
-
-Status check_choices(const plc_parameters& p) {
-  return check_ranges(
-      {{"init", static_cast<double>(p.init), p.init >= PLC_INIT_BUBBLE && p.init <= PLC_INIT_MESH,
-        "a plc_init"},
-       {"force", static_cast<double>(p.force),
-        p.force >= PLC_FORCE_ISO && p.force <= PLC_FORCE_BOTH, "a plc_force"},
-       {"feature", static_cast<double>(p.feature),
-        p.feature >= PLC_FEATURE_NONE && p.feature <= PLC_FEATURE_GRADIENT_NORM, "a plc_feature"},
-       {"late bubbles", static_cast<double>(p.late_bubbles),
-        p.late_bubbles == 0 || p.late_bubbles == 1, "0 or 1"},
-       {"sleeping", static_cast<double>(p.sleeping), p.sleeping == 0 || p.sleeping == 1, "0 or 1"},
-       {"rest length", static_cast<double>(p.rest_length),
-        p.rest_length >= PLC_REST_ZERO && p.rest_length <= PLC_REST_VALUE, "a plc_rest_length"},
-       {"bound", static_cast<double>(p.bound),
-        p.bound >= PLC_BOUND_CLAMP && p.bound <= PLC_BOUND_SCALE, "a plc_bound"},
-       {"anisotropy", static_cast<double>(p.anisotropy),
-        p.anisotropy >= PLC_ANISOTROPY_PHYSICAL && p.anisotropy <= PLC_ANISOTROPY_METRIC,
-        "a plc_anisotropy"}});
-}
 
 // An object that the surroundings of the image belong to has no end: its surface would grow for
 // ever.
@@ -106,7 +62,7 @@ Status check_surroundings(const plc_parameters& p) {
 }  // namespace
 
 Status check_parameters(const plc_parameters& p) {
-  if (Status s = check_choices(p); !s.ok()) return s;
+  if (Status s = check_ranges(p); !s.ok()) return s;
   if (std::isnan(p.iso)) {
     if (p.force != PLC_FORCE_GRADIENT) return {ErrorCode::kInvalidArgument, "iso: not set"};
     if (p.init == PLC_INIT_ISO) {
@@ -116,36 +72,12 @@ Status check_parameters(const plc_parameters& p) {
       return {ErrorCode::kInvalidArgument, "level iso-values: given, but iso is not set"};
     }
   }
-  if (std::isinf(p.iso)) return bad("iso", p.iso, "finite");
-  if (Status s = check_levels(p); !s.ok()) return s;
-  for (const int n : p.bubbles) {
-    if (n < 1 || n > 256) return bad("bubbles", n, "1 .. 256 per axis");
+  if (p.level_iso_count > 0 && p.levels >= 0 && p.level_iso_count != p.levels + 1) {
+    return {ErrorCode::kInvalidArgument, "level iso-values: " + std::to_string(p.level_iso_count) +
+                                             " given, " + std::to_string(p.levels + 1) +
+                                             " expected (one per level)"};
   }
-  for (int h = 0; h < p.level_iso_count; ++h) {
-    if (!std::isfinite(p.level_iso[h])) return bad("level iso-value", p.level_iso[h], "finite");
-  }
-  return check_ranges({
-      {"window low", p.window_low, !std::isinf(p.window_low), "finite"},
-      {"window high", p.window_high, !std::isinf(p.window_high), "finite"},
-      {"pad value", p.pad_value, !std::isinf(p.pad_value), "finite"},
-      {"curvature", p.curvature, coefficient(p.curvature), "0 .. 1e6"},
-      {"spring", p.spring, coefficient(p.spring), "0 .. 1e6"},
-      {"rest length", p.rest_length_value, coefficient(p.rest_length_value), "0 .. 1e6"},
-      {"attraction", p.attraction, positive(p.attraction), "1e-6 .. 1e6"},
-      {"gradient", p.gradient, coefficient(std::abs(p.gradient)), "-1e6 .. 1e6"},
-      {"gradient tangent", p.gradient_tangent, coefficient(std::abs(p.gradient_tangent)),
-       "-1e6 .. 1e6"},
-      {"gradient bound", p.gradient_bound, positive(p.gradient_bound), "1e-6 .. 1e6"},
-      {"feature sigma", p.feature_sigma, coefficient(p.feature_sigma), "0 .. 1e6 mm"},
-      {"calm speed", p.calm_speed, coefficient(p.calm_speed), "0 .. 1e6"},
-      {"mass", p.mass, positive(p.mass), "1e-6 .. 1e6"},
-      {"damping", p.damping, coefficient(p.damping), "0 .. 1e6"},
-      {"time step", p.time_step, positive(p.time_step), "1e-6 .. 1e6"},
-      {"max move", p.max_move, p.max_move > 0 && p.max_move <= 1, "above 0 and at most 1 delta"},
-      {"epsilon", p.epsilon, p.epsilon > 0 && p.epsilon <= 1, "above 0 and at most 1"},
-      {"max iterations", static_cast<double>(p.max_iterations), p.max_iterations >= 1,
-       "at least 1"},
-  });
+  return {};
 }
 
 Status derive_parameters(const VolumeView& volume, const VoxelRange& range,

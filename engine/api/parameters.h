@@ -7,7 +7,8 @@
 
 namespace plc {
 
-// Checks every field on its own. The message names the parameter, its value and the range.
+// Checks every field, and those that go together. The message names the parameter, its value and
+// the range.
 Status check_parameters(const plc_parameters& parameters);
 
 // Fills in what is NAN or -1: window, pad value, level count. `range` is that of the image;

@@ -213,10 +213,14 @@ size_t wave_end(const std::vector<Pass>& passes, size_t begin) {
   return end;
 }
 
-std::string names(const std::vector<Pass>& passes, size_t begin, size_t end) {
-  std::string all = passes[begin].name;
-  for (size_t i = begin + 1; i < end; ++i) all.append(", ").append(passes[i].name);
-  return all;
+void tell(const PassEnd& after, const std::vector<Pass>& passes, size_t begin, size_t end) {
+  std::string names = passes[begin].name;
+  uint32_t writes = passes[begin].writes;
+  for (size_t i = begin + 1; i < end; ++i) {
+    names.append(", ").append(passes[i].name);
+    writes |= passes[i].writes;
+  }
+  after(names, writes);
 }
 
 }  // namespace
@@ -246,7 +250,7 @@ Status Schedule::run_passes(const std::vector<Pass>& passes, bool small,
     }
     first_failed = std::find_if(status.begin(), status.end(), failed);
     if (first_failed != status.end()) break;
-    if (after) after(names(passes, begin, end));
+    if (after) tell(after, passes, begin, end);
   }
   for (size_t i = 0; i < passes.size(); ++i) *passes[i].seconds += seconds[i];
   return first_failed == status.end() ? Status() : *first_failed;

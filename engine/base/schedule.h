@@ -59,7 +59,7 @@ enum Resource : uint32_t {
   kLaplacians = 1U << 5,
   kStages = 1U << 6,  // force, stage position and velocity, sums of Runge-Kutta
   kDisplacements = 1U << 7,
-  kEnergy = 1U << 8,
+  kStep = 1U << 8,  // its time; the energy and speed of what has moved
   kUserForce = 1U << 9,
   kAwake = 1U << 10,  // who takes part in the step
   kCalm = 1U << 11,   // for how long vertices have been calm, and their turns
@@ -98,8 +98,8 @@ struct Pass {
 };
 
 // Of the passes that have just ended: their names, with ", " between those that may run at the same
-// time.
-using PassEnd = std::function<void(const std::string& names)>;
+// time, and what the table says that they write.
+using PassEnd = std::function<void(const std::string& names, uint32_t writes)>;
 
 // Whose threads run the tasks of loops.
 struct Threads {

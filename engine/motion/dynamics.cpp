@@ -155,26 +155,28 @@ void Dynamics::restore(StateReader& from) {
 
 void Dynamics::append_passes(const Guide& guide, const Sleep* sleep, Seconds& seconds,
                              std::vector<Pass>& table) {
-  table.push_back({"begin", kAwake | kRings | kPositions, kStages | kLaplacians, &seconds.dynamics,
+  table.push_back({"begin", kAwake | kRings | kPositions,
+                   kAwake | kStep | kNormals | kStages | kLaplacians, &seconds.dynamics,
                    [this, guide, sleep] { begin_step(guide, sleep); }});
-  table.push_back({"normals", kRings | kPositions, kNormals | kLaplacians, &seconds.normals,
-                   [this, guide] { normals(guide); }});
+  table.push_back({"normals", kAwake | kRings | kPositions, kNormals | kLaplacians,
+                   &seconds.normals, [this, guide] { normals(guide); }});
   if (model_.spring > 0) {
     table.push_back({"rest length", kRings | kPositions, kRestLength, &seconds.dynamics,
                      [this, guide] { measure_rest_length(guide); }});
   }
   for (int stage = 0; stage < 4; ++stage) add_stage(stage, guide, seconds, table);
   if (!moves_at_once(guide)) {
-    table.push_back({"bound", kRings | kPositions | kNormals | kRestLength,
-                     kDisplacements | kStages | kLaplacians, &seconds.dynamics, [this, guide] {
+    table.push_back({"bound", kRings | kPositions | kVelocities | kNormals | kRestLength,
+                     kDisplacements | kStages | kLaplacians | kStep, &seconds.dynamics,
+                     [this, guide] {
                        Status s;
                        if (model_.bound == Bound::kScale) s = scale_time_step(guide);
                        if (guide.user != nullptr && !guide.user->pins.empty()) hold_pinned(guide);
                        return s;
                      }});
-    table.push_back({"move", kDisplacements | kNormals | kStages,
-                     kStages | kPositions | kVelocities | kDue | kEnergy, &seconds.dynamics,
-                     [this] { move(); }});
+    table.push_back({"move", kAwake | kNormals | kCalm,
+                     kStages | kDisplacements | kPositions | kVelocities | kDue | kStep,
+                     &seconds.dynamics, [this] { move(); }});
   }
 }
 
@@ -182,18 +184,18 @@ void Dynamics::add_stage(int stage, const Guide& guide, Seconds& seconds,
                          std::vector<Pass>& table) {
   const auto numbered = [stage](std::string name) { return name += std::to_string(stage + 1); };
   if (model_.curvature > 0 && stage > 0) {
-    table.push_back({numbered("laplacian "), kRings | kPositions | kStages, kLaplacians,
+    table.push_back({numbered("laplacian "), kAwake | kRings | kPositions | kStages, kLaplacians,
                      &seconds.dynamics, [this, stage] { laplacians(stage); }});
   }
   if (guide.user != nullptr && guide.user->force) {
     table.push_back({numbered("user force "), kRings | kPositions | kNormals | kStages, kUserForce,
                      &seconds.dynamics, [this, stage, guide] { return user_force(stage, guide); }});
   }
-  constexpr uint32_t kRead =
-      kRings | kPositions | kVelocities | kNormals | kRestLength | kLaplacians | kUserForce;
+  constexpr uint32_t kRead = kAwake | kRings | kPositions | kVelocities | kNormals | kRestLength |
+                             kLaplacians | kUserForce | kStep;
   if (stage == 3 && moves_at_once(guide)) {
-    table.push_back({"stage 4 and move", kRead,
-                     kStages | kDisplacements | kPositions | kVelocities | kDue | kEnergy,
+    table.push_back({"stage 4 and move", kRead | kCalm,
+                     kStages | kDisplacements | kPositions | kVelocities | kDue | kStep,
                      &seconds.dynamics, [this, guide] { last_stage_and_move(guide); }});
     return;
   }

@@ -1,4 +1,6 @@
 // What is compared of two runs' dynamics after a pass.
+#include <array>
+
 #include "engine/motion/dynamics.h"
 
 namespace plc {
@@ -6,7 +8,6 @@ namespace plc {
 void Dynamics::append_hashes(std::vector<PartHash>& hashes) const {
   Fnv step;
   step.add(time_step_);
-  step.add(rest_length_);
   step.add(energy_);
   step.add(speed_of_fastest_);
   for (const kernels::Movement& m : movement_) {
@@ -14,6 +15,7 @@ void Dynamics::append_hashes(std::vector<PartHash>& hashes) const {
     step.add(m.longest2);
   }
   hashes.insert(hashes.end(), {{"step", step.value()},
+                               part_hash("rest length", std::array{rest_length_}),
                                part_hash("blocks", blocks_),
                                part_hash("laplacian", laplacian_),
                                part_hash("force", force_),

@@ -41,7 +41,9 @@ Status Evolution::iterate(const Guide& guide, Seconds& seconds, OperationCounts&
   append_movement(guide, seconds, table);
   append_topology(seconds, counts, table);
   PassEnd after;
-  if (observer_) after = [this](const std::string& names) { notify(names); };
+  if (observer_) {
+    after = [this](const std::string& names, uint32_t writes) { notify(names, writes); };
+  }
   Status s = schedule_.run_passes(table, dynamics_.in_order(guide), after);
   if (!s.ok()) return s;
   assert(sound(mesh_, schedule_));
@@ -52,8 +54,8 @@ Status Evolution::iterate(const Guide& guide, Seconds& seconds, OperationCounts&
 void Evolution::append_movement(const Guide& guide, Seconds& seconds, std::vector<Pass>& table) {
   // The user's force may change at any time.
   const bool all = guide.user != nullptr && guide.user->force;
-  table.push_back({"sleep", kCalm, kAwake | kVelocities | kDisplacements, &seconds.dynamics,
-                   [this, all] { sleep_.choose(all); }});
+  table.push_back({"sleep", kCalm | kRings, kAwake | kVelocities | kDisplacements,
+                   &seconds.dynamics, [this, all] { sleep_.choose(all); }});
   dynamics_.append_passes(guide, &sleep_, seconds, table);
   table.push_back({"calm", kAwake | kRings | kNormals | kDisplacements, kCalm, &seconds.dynamics,
                    [this] { sleep_.observe(); }});

@@ -50,8 +50,8 @@ class Evolution {
   // For tests. Empty: nobody looks, which costs nothing.
   void set_observer(PassObserver observer) { observer_ = std::move(observer); }
   // Tells the observer; also of what is no pass of an iteration.
-  void notify(const std::string& pass) const {
-    if (observer_) observer_(pass, *this);
+  void notify(const std::string& pass, uint32_t writes = kEverything) const {
+    if (observer_) observer_(pass, writes, *this);
   }
   // The state as it is now, part by part: between passes all that the next ones read.
   std::vector<PartHash> hashes() const;

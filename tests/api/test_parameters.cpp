@@ -91,7 +91,7 @@ TEST_CASE("each number outside its range is refused by name, value and range", "
       {&P::curvature, kNan, "curvature nan: must be 0 .. 1e6"},
       {&P::spring, -1, "spring -1: must be 0 .. 1e6"},
       {&P::spring, kInf, "spring inf: must be 0 .. 1e6"},
-      {&P::rest_length_value, -2, "rest length -2: must be 0 .. 1e6"},
+      {&P::rest_length_value, -2, "rest length value -2: must be 0 .. 1e6"},
       {&P::attraction, 0, "attraction 0: must be 1e-6 .. 1e6"},
       {&P::attraction, -1, "attraction -1: must be 1e-6 .. 1e6"},
       {&P::attraction, kNan, "attraction nan: must be 1e-6 .. 1e6"},
@@ -115,8 +115,8 @@ TEST_CASE("each number outside its range is refused by name, value and range", "
       {&P::max_iterations, 0, "max iterations 0: must be at least 1"},
       {&P::sleeping, 2, "sleeping 2: must be 0 or 1"},
       {&P::late_bubbles, -1, "late bubbles -1: must be 0 or 1"},
-      {&P::level_iso_count, -1, "level iso-values: -1 given, 1 expected (one per level)"},
-      {&P::level_iso_count, 33, "level iso-values: 33 given, 1 expected (one per level)"},
+      {&P::level_iso_count, -1, "level iso count -1: must be 0 .. 32"},
+      {&P::level_iso_count, 33, "level iso count 33: must be 0 .. 32"},
   };
   for (const RefusedInt& r : kRefusedInts) {
     CHECK(refusal([&](plc_parameters& p) { p.*r.field = r.value; }) == r.message);
@@ -175,7 +175,7 @@ TEST_CASE("there is an iso-value for every level, or for none", "[parameters]") 
   CHECK(refusal([](plc_parameters& p) {
           p.level_iso_count = 2;
           p.level_iso[1] = kNan;
-        }) == "level iso-value nan: must be finite");
+        }) == "level iso nan: must be finite");
 }
 
 TEST_CASE("what is not set is derived from the image", "[parameters]") {

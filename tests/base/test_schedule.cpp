@@ -108,10 +108,10 @@ TEST_CASE("passes keep their order where one writes what another reads or writes
       Span written, read, other, overwritten, last;
       const std::vector<Pass> table{
           traced("write", 0, plc::kNormals, seconds[0], written, clock),
-          traced("read", plc::kNormals, plc::kEnergy, seconds[0], read, clock),
+          traced("read", plc::kNormals, plc::kStep, seconds[0], read, clock),
           traced("other", plc::kRings, plc::kRestLength, seconds[1], other, clock),
           traced("overwrite", plc::kRings, plc::kNormals, seconds[1], overwritten, clock),
-          traced("last", plc::kNormals | plc::kEnergy | plc::kRestLength, 0, seconds[1], last,
+          traced("last", plc::kNormals | plc::kStep | plc::kRestLength, 0, seconds[1], last,
                  clock)};
       CHECK(schedule.run_passes(table, small).ok());
       CAPTURE(threads, small);
@@ -162,17 +162,20 @@ TEST_CASE("who waits for passes to end is told the same for any threads, when no
                     }};
       };
       std::vector<std::string> told;
+      std::vector<uint32_t> written;
       std::vector<int> count;
       const std::vector<Pass> table{pass("normals", 0, plc::kNormals),
                                     pass("rest length", 0, plc::kRestLength),
                                     pass("stage", plc::kNormals, plc::kStages)};
-      const auto after = [&](const std::string& names) {
+      const auto after = [&](const std::string& names, uint32_t writes) {
         told.push_back(names);
+        written.push_back(writes);
         count.push_back(ended);
       };
       CHECK(schedule.run_passes(table, small, after).ok());
       CAPTURE(threads, small);
       CHECK(told == std::vector<std::string>{"normals, rest length", "stage"});
+      CHECK(written == std::vector<uint32_t>{plc::kNormals | plc::kRestLength, plc::kStages});
       CHECK(count == std::vector<int>{2, 3});
     }
   }
@@ -203,7 +206,7 @@ TEST_CASE("a pass that fails ends the table, and its status is the table's", "[s
     const std::vector<Pass> table{{"first", 0, plc::kNormals, &seconds, [] {}},
                                   {"fails", plc::kNormals, plc::kStages, &seconds, fails},
                                   {"after", plc::kStages, 0, &seconds, [&] { went_on = true; }}};
-    const auto after = [&](const std::string& names) { told.push_back(names); };
+    const auto after = [&](const std::string& names, uint32_t) { told.push_back(names); };
     CHECK(schedule.run_passes(table, false, after).message() == "no");
     CHECK_FALSE(went_on);
     CHECK(told == std::vector<std::string>{"first"});

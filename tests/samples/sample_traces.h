@@ -15,6 +15,7 @@ namespace samples {
 struct Step {
   int iteration;  // of the whole run, from 1; 0: before the first
   std::string pass;
+  uint32_t writes;  // what the table says of it
   std::vector<plc::PartHash> parts;
 };
 
@@ -35,7 +36,7 @@ inline Trace traced(const Run& run, int threads, plc::SimdTarget target, const F
   Trace trace;
   int iteration = 0;
   plc::RecoveryHooks hooks;
-  hooks.pass = [&](const std::string& pass, const plc::Evolution& evolution) {
+  hooks.pass = [&](const std::string& pass, uint32_t writes, const plc::Evolution& evolution) {
     if (pass == "sleep") {
       ++iteration;
       trace.most_awake = std::max(trace.most_awake, evolution.awake());
@@ -44,7 +45,7 @@ inline Trace traced(const Run& run, int threads, plc::SimdTarget target, const F
       }
     }
     if (fault) fault(iteration, pass, mesh);
-    trace.steps.push_back({iteration, pass, evolution.hashes()});
+    trace.steps.push_back({iteration, pass, writes, evolution.hashes()});
   };
   REQUIRE(plc::pyramidal_recover_shape(pyramid_of(run, schedule, target), run.recovery, schedule,
                                        target, hooks, mesh, trace.records)
