@@ -51,8 +51,15 @@ constexpr plc_parameter_info flag(Field f, int value) {
 template <size_t kWords>
 constexpr plc_parameter_info choice(Field f, int value, int first, const char* range,
                                     const char* const (&words)[kWords]) {
-  return {f.name,        PLC_PARAMETER_CHOICE,       f.offset, f.count, double(value),
-          double(first), double(first + kWords - 1), range,    words};
+  return {f.name,
+          PLC_PARAMETER_CHOICE,
+          f.offset,
+          f.count,
+          double(value),
+          double(first),
+          double(first) + double(kWords) - 1,
+          range,
+          words};
 }
 
 constexpr const char* kFeatures[] = {"none", "gradient_norm"};
