@@ -46,7 +46,9 @@ void delete_tetrahedron(Mesh& mesh, uint32_t v) {
 }
 
 const Vector<uint32_t>& TinyComponents::flood(const Mesh& mesh, uint32_t v) {
-  component_.assign(1, v);
+  component_.clear();
+  if (v >= mesh.slots() || !mesh.alive(v) || seen(v)) return component_;
+  component_.push_back(v);
   seen_[v] = ++flood_;
   bool whole = true;
   for (size_t next = 0; next < component_.size() && whole; ++next) {
@@ -75,25 +77,40 @@ void TinyComponents::restore(StateReader& from, uint32_t slots) {
 
 void TinyComponents::start(Mesh& mesh) {
   watched_.clear();
-  seen_.assign(mesh.slots(), 0);
+  seen_.clear();
   flood_ = 0;
-  first_flood_ = flood_ + 1;
+  start_floods(mesh);
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
-    if (!mesh.alive(v) || seen(v)) continue;
     const auto& component = flood(mesh, v);
     if (component.empty()) continue;
     watched_.push_back({component[0], signed_volume(mesh, component) > 0 ? 1U : 0U});
   }
 }
 
-int64_t TinyComponents::update(Mesh& mesh, const Vector<uint32_t>& changed) {
+void TinyComponents::start_floods(const Mesh& mesh) {
   seen_.resize(mesh.slots(), 0);
   first_flood_ = flood_ + 1;
+}
+
+int64_t TinyComponents::delete_turned_over(Mesh& mesh) {
+  start_floods(mesh);
+  int64_t deleted = 0;
+  for (const Watched& w : watched_) {
+    const auto& component = flood(mesh, w.vertex);
+    if (component.empty()) continue;  // only in a forged state
+    if ((signed_volume(mesh, component) > 0) == (w.positive != 0)) continue;
+    for (const uint32_t v : component) mesh.destroy(v);
+    ++deleted;
+  }
+  return deleted;
+}
+
+int64_t TinyComponents::update(Mesh& mesh, const Vector<uint32_t>& changed) {
+  start_floods(mesh);
   Vector<Watched> still;
   int64_t deleted = 0;
   const double least = kTinyVolume * mesh.delta * mesh.delta * mesh.delta;
   const auto look = [&](uint32_t v, const Watched* known) {
-    if (v >= mesh.slots() || !mesh.alive(v) || seen(v)) return;
     const auto& component = flood(mesh, v);
     if (component.empty()) return;
     const double volume = signed_volume(mesh, component);

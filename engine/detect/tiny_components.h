@@ -17,8 +17,12 @@ class TinyComponents {
  public:
   // Looks at every vertex: at the start of a level.
   void start(Mesh& mesh);
+  // Deletes the components followed so far that a movement has turned over. Returns how many. No
+  // vertex was created or deleted since the last look: a component is known by one of its vertices.
+  int64_t delete_turned_over(Mesh& mesh);
   // Looks at the components followed so far and at those of `changed`; deletes what has turned over
-  // or nearly vanished. Returns how many were deleted.
+  // or nearly vanished. Returns how many were deleted. The sign of a component whose known vertex
+  // is gone is taken anew: what the movement has turned over must have been deleted before.
   int64_t update(Mesh& mesh, const Vector<uint32_t>& changed);
   // Forgets all: ids have changed.
   void clear() { watched_.clear(); }
@@ -31,17 +35,18 @@ class TinyComponents {
     uint32_t vertex;    // the smallest id of the component
     uint32_t positive;  // sign of the volume when it was first seen: 1 or 0
   };
-  // The component of v, when it has at most kTinyComponent vertices; else empty.
+  void start_floods(const Mesh& mesh);
+  // Whether a flood since start_floods() has come across v.
+  bool seen(uint32_t v) const { return seen_[v] >= first_flood_; }
+  // The component of v, when v is alive and not seen() and it has at most kTinyComponent vertices;
+  // else empty.
   const Vector<uint32_t>& flood(const Mesh& mesh, uint32_t v);
 
   Vector<Watched> watched_;
-  // Whether a flood of this update has come across v.
-  bool seen(uint32_t v) const { return seen_[v] >= first_flood_; }
-
   Vector<uint32_t> seen_;  // by vertex: the last flood that came across it, counted from 1
   Vector<uint32_t> component_;
   uint32_t flood_ = 0;
-  uint32_t first_flood_ = 1;  // of this update
+  uint32_t first_flood_ = 1;  // since start_floods()
 };
 
 }  // namespace plc

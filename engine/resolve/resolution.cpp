@@ -70,6 +70,7 @@ void Resolution::run(uint32_t iteration, const Vector<uint32_t>& moved_since,
   std::fill(mesh_.operations.begin(), mesh_.operations.end(), uint8_t{0});
   pair_queue_ = moved_since;
   changed_.clear();
+  counts.tetrahedron += tiny_.delete_turned_over(mesh_);
   stamp_.resize(mesh_.slots(), 0);
   queue_violated_edges();
   for (int pass = 0; pass < kMaxAxialPasses; ++pass) {

@@ -1,6 +1,7 @@
 #include "engine/detect/tiny_components.h"
 
 #include <catch2/catch.hpp>
+#include <vector>
 
 #include "engine/base/constants.h"
 #include "tests/samples/sample_surfaces.h"
@@ -54,15 +55,17 @@ TEST_CASE("deleting a tetrahedron lowers Euler's number by two and nothing else"
 
 TEST_CASE("a small component that turns inside out is deleted, a large one is not",
           "[tiny_components]") {
+  const bool by_movement = GENERATE(false, true);
   Mesh mesh;
   samples::fill_mesh(mesh, large_and_small(), 1);
   TinyComponents tiny;
   tiny.start(mesh);
+  CHECK(tiny.delete_turned_over(mesh) == 0);
   CHECK(tiny.update(mesh, {}) == 0);
   mirror(mesh, 0, kLarge);
   CHECK(tiny.update(mesh, {}) == 0);
   mirror(mesh, kLarge, mesh.slots());
-  CHECK(tiny.update(mesh, {}) == 1);
+  CHECK((by_movement ? tiny.delete_turned_over(mesh) : tiny.update(mesh, {})) == 1);
   CHECK(mesh.vertex_count() == kLarge);
   CHECK(plc::broken_invariant(mesh) == "");
 }
@@ -128,6 +131,25 @@ TEST_CASE("a component that becomes small is followed from then on", "[tiny_comp
   mirror(mesh, 0, 6);
   CHECK(tiny.update(mesh, {}) == 1);
   CHECK(mesh.vertex_count() == 0);
+}
+
+TEST_CASE("a forged state that follows what is no small component does no harm",
+          "[tiny_components]") {
+  Mesh mesh;
+  samples::fill_mesh(mesh, large_and_small(), 1);
+  const uint32_t gone = mesh.create({}, {});
+  // Number, then vertex and sign: of the large one, of none, of none yet, of the small one, twice.
+  std::vector<uint32_t> forged{6, 0};
+  for (const uint32_t v : {uint32_t{0}, gone, mesh.slots(), ~0U, kLarge, kLarge + 1}) {
+    forged.insert(forged.end(), {v, 0});
+  }
+  plc::StateReader from(reinterpret_cast<const uint8_t*>(forged.data()), forged.size() * 4);
+  TinyComponents tiny;
+  tiny.restore(from, mesh.slots());
+  REQUIRE(from.ok());
+  CHECK(tiny.delete_turned_over(mesh) == 1);
+  CHECK(tiny.update(mesh, {}) == 0);
+  CHECK(mesh.vertex_count() == kLarge);
 }
 
 TEST_CASE("a component named by several changed vertices is looked at once", "[tiny_components]") {

@@ -303,3 +303,25 @@ TEST_CASE("whether neighbours fit is asked for every vertex that gets more", "[r
   CHECK_FALSE(fits(plc::Operation::kAxial, 11));
   CHECK(fits(plc::Operation::kAnnular, 4));
 }
+
+TEST_CASE("what a movement turns inside out is gone, though it is cut in two in the same pass",
+          "[resolution]") {
+  for (const float side : {1.0F, -1.0F}) {
+    Soup waist = samples::tube(3, 5, 1.2);
+    for (uint32_t v = 0; v < waist.vertex_count(); ++v) {
+      const double narrow = v / 3 == 2 ? 0.4 : 1;
+      waist.xyz[3 * v] *= narrow;
+      waist.xyz[3 * v + 1] *= narrow;
+      waist.xyz[3 * v + 2] *= 1.5;
+    }
+    Mesh mesh;
+    samples::fill_mesh(mesh, waist, 1);
+    Resolver resolver(mesh);
+    for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.place(v, mesh.at(v) * side);
+    resolver.search_all();
+    const OperationCounts counts = resolver.run(1);
+    CAPTURE(side);
+    CHECK((counts.annular > 0) == (side > 0));
+    CHECK((mesh.vertex_count() > 0) == (side > 0));
+  }
+}
