@@ -17,8 +17,9 @@ echo "$*" >>pellicle.log
 while [ "$1" != --report ]; do shift; done
 cat >"$2" <<'JSON'
 {"parameters": {"pad": -7.5}, "surface": {"vertices": 1000}, "seconds": {"total": 1.5}, "levels": [
-  {"level": 1, "iterations": 500, "converged": false, "frozen": {"sites": 3, "vertices": 9}, "operations": {"creation": 1000}},
-  {"level": 0, "iterations": 61, "converged": true, "operations": {"creation": 200, "deletion": 34}}]}
+  {"level": 2, "vertices": 0, "iterations": 0, "converged": false, "operations": {"creation": 0}},
+  {"level": 1, "vertices": 90, "iterations": 500, "converged": false, "frozen": {"sites": 3, "vertices": 9}, "operations": {"creation": 1000}},
+  {"level": 0, "vertices": 1000, "iterations": 61, "converged": true, "operations": {"creation": 200, "deletion": 34}}]}
 JSON
 END
 cat >build/perf/peers/peer_distances <<'END'
@@ -42,7 +43,7 @@ expect() {
 # has FILE TEXT: a line of a log.
 has() { grep -qF -- "$2" "$1" || { echo "$1 does not have $2: $(cat "$1")" >&2; exit 1; }; }
 
-numbers='1000 | 1.2 | 500 61 | 1 of 2 | 3 | 1.50 | 0.310 | 12.346 | 0.005 | 0.000 |'
+numbers='1000 | 1.2 | (0) 500 61 | 1 of 2 | 3 | 1.50 | 0.310 | 12.346 | 0.005 | 0.000 |'
 expect 0 "| head.nii | 226 | $numbers" head.nii:226 knee.nii:-4.5e1
 expect 0 "| knee.nii | -4.5e1 | $numbers" head.nii:226 knee.nii:-4.5e1 -- --inside below --levels 0
 [ "$(grep -c '^|' out)" -eq 4 ] || { echo "not two rows: $(cat out)" >&2; exit 1; }
