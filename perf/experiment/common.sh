@@ -1,7 +1,8 @@
 # What the experiments share: runs, rows of tables, pictures. Sourced by perf/experiments, with $root
-# set. Every number of ours in the results is read from the report of a run (number, row).
+# set and, before one starts, $commit. Every number of ours in the results is read from the report of a
+# run (number, row).
 
-results=$root/perf/results
+results=${RESULTS:-$root/perf/results}
 out=${EXPERIMENTS:-$root/out/experiments}
 pellicle=${PELLICLE:-$root/build/tools/pellicle}
 head_ct=/usr/share/doc/invesalius-examples/examples/Cranium.inv3
@@ -15,7 +16,7 @@ start_experiment() {
   rm -f "$dir"/*.part "$dir"/tile-*
   tiles=0
   printf '\n## %s\n\n%s, commit %s, %s cores of %s, %s.\n' "$experiment" "$(date +%F)" \
-    "$(git -C "$root" describe --always --dirty)" "$(nproc)" \
+    "$commit" "$(nproc)" \
     "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1)" "$(c++ --version | head -1)" \
     >"$dir/section.part"
 }

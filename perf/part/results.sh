@@ -24,7 +24,11 @@ write_results() {
   mkdir -p "$to"
   date=$(jq -rs 'map(.date) | max' "${parts[@]}")
   file=$to/$date-$commit.json
-  rm -f "$to"/????-??-??-"$commit".json  # of an earlier day
+  if [ -n "$publish" ]; then
+    rm -f "$to"/????-??-??-*.json  # the last published run alone
+  else
+    rm -f "$to"/????-??-??-"$commit".json  # of an earlier day
+  fi
   jq -s --argjson facts "$(facts)" --arg date "$date" '
     {$date} + $facts + {
       parts: (map({(.part): {date, load, seconds}}) | add),
