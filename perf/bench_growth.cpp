@@ -123,7 +123,7 @@ void make_surface(const bench::Potential& potential, const plc::Guide& guide, in
   plc::Mesh mesh;
   mesh.delta = kDelta;
   const std::vector<float> lattice = potential.sample(kStartCell);
-  demand(plc::iso_surface(potential.view(lattice, kStartCell), bench::Potential::kIso, true,
+  demand(plc::iso_surface({potential.view(lattice, kStartCell), bench::Potential::kIso, true},
                           schedule, mesh));
   mesh.renumber(plc::morton_order(mesh));
   plc::Evolution evolution(mesh, schedule, kSimd, plc::Model());

@@ -27,8 +27,7 @@ void choose_isos(const VolumeView& volume, double background, PyramidData& pyram
   std::vector<double>& isos = pyramid.isos;
   const Host& host = *pyramid.host;
   if (std::isnan(p.iso)) {
-    isos.assign(pyramid.images.levels.size(), NAN);
-    std::fill_n(p.level_iso, isos.size(), NAN);
+    std::fill_n(p.level_iso, pyramid.images.levels.size(), NAN);
   } else if (p.level_iso_count == 0) {
     isos = covering_isos(pyramid.images, base_iso(volume, p, p.iso), p.inside_below == 0,
                          level_iso_bound(p, background), host.schedule, host.simd);

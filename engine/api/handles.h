@@ -57,7 +57,7 @@ struct PyramidData {
   VoxelRange range;
   Buffer<float> feature;  // what I_0 then is
   Pyramid images;
-  std::vector<double> isos;   // normalised; NAN: none
+  std::vector<double> isos;   // normalised, of each level; none where no iso-value is set
   double seconds = 0;         // of all this
   double seconds_images = 0;  // of it, build_pyramid
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/constants.h"
+#include "engine/start/image_object.h"
 #include "kernels/image_value.h"
 #include "pyramid/memory.h"
 
@@ -24,14 +25,15 @@ constexpr double kLooked = 1 << 22;
 
 // Faces between the object and the rest along each axis, of the voxels of slice z and with the next
 // slice.
-std::array<int64_t, 3> faces_of(const ImageView& image, float iso, bool above, int32_t z) {
+std::array<int64_t, 3> faces_of(const ImageObject& object, int32_t z) {
+  const ImageView& image = object.image;
   const auto width = static_cast<size_t>(image.dims[0]);
   Vector<float> values(width);
   Vector<uint8_t> last(width), row(width), next(width);
   std::array<int64_t, 3> faces{};
   const auto read = [&](int32_t y, int32_t plane, Vector<uint8_t>& side) {
     image_row(image, y, plane, values.data());
-    for (size_t x = 0; x < width; ++x) side[x] = above ? values[x] >= iso : values[x] <= iso;
+    for (size_t x = 0; x < width; ++x) side[x] = object.has(values[x]) ? 1 : 0;
   };
   for (int32_t y = 0; y < image.dims[1]; ++y) {
     read(y, z, row);
@@ -47,15 +49,15 @@ std::array<int64_t, 3> faces_of(const ImageView& image, float iso, bool above, i
 }
 
 // Of the surface of the object, in mesh units squared.
-double area_of(const ImageView& image, float iso, bool above, const Executor& executor) {
+double area_of(const ImageObject& object, const Executor& executor) {
+  const ImageView& image = object.image;
   const double voxels = static_cast<double>(image.dims[0]) * image.dims[1] * image.dims[2];
   const auto step = static_cast<int32_t>(std::max(1.0, voxels / kLooked));
   const int32_t count = (image.dims[2] - 2) / step + 1;
   const auto slices = static_cast<size_t>(count);
   Vector<std::array<int64_t, 3>> parts(slices);
-  executor.run(slices, [&](size_t i) {
-    parts[i] = faces_of(image, iso, above, static_cast<int32_t>(i) * step);
-  });
+  executor.run(slices,
+               [&](size_t i) { parts[i] = faces_of(object, static_cast<int32_t>(i) * step); });
   double area = 0;
   for (const auto& part : parts) {
     for (size_t a = 0; a < 3; ++a) {
@@ -86,11 +88,10 @@ Cost expected_cost(const Pyramid& pyramid, const std::vector<double>& isos, bool
   for (const int64_t dim : pyramid.levels[0].dims) {
     cost.voxels *= static_cast<double>(dim - 2 * int64_t{pad});
   }
-  for (size_t level = 0; level < pyramid.levels.size(); ++level) {
-    if (std::isnan(isos[level])) continue;
+  for (size_t level = 0; level < isos.size(); ++level) {
     const int h = static_cast<int>(level);
     const ImageView image = image_view(pyramid, h, pad, mesh_space(pyramid, h, anisotropy));
-    const double area = area_of(image, static_cast<float>(isos[level]), inside_above, executor);
+    const double area = area_of({image, static_cast<float>(isos[level]), inside_above}, executor);
     const double delta = level_delta(pyramid, h, anisotropy);
     const double vertices = std::min(area / (kAreaPerVertex * delta * delta),
                                      most_vertices(pyramid, h, pad, anisotropy));

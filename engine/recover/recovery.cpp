@@ -129,7 +129,7 @@ void Recovery::enter(int h) {
   space_ = mesh_space(pyramid_, h, spec_.anisotropy);
   if (mesh_.vertex_count() != 0) change_space(mesh_, before, space_);
   guide_.image = image_view(pyramid_, h, spec_.pad_voxels, space_);
-  guide_.iso = iso_of(h);
+  guide_.iso = iso_of(h).value_or(0);
   guide_.metric = space_.metric;
   user_ = spec_.user;
   const auto place = [this](Vec3 voxel) {
@@ -354,11 +354,12 @@ bool Recovery::confirmed(int calm) {
 Status Recovery::add_late_bubbles(bool& added) {
   added = false;
   const bool at_rest = mesh_.vertex_count() == 0 || energy_ <= kLateEnergy * spec_.epsilon;
-  if (!spec_.late_bubbles || std::isnan(guide_.iso) || !at_rest) return {};
+  const std::optional<float> iso = iso_of(level_);
+  if (!spec_.late_bubbles || !iso || !at_rest) return {};
   const double start = now();
   const uint32_t before = mesh_.vertex_count();
   LateBubbles late;
-  if (Status s = start_late_bubbles(guide_.image, guide_.iso, spec_.inside_above, schedule_, simd_,
+  if (Status s = start_late_bubbles({guide_.image, *iso, spec_.inside_above}, schedule_, simd_,
                                     mesh_, tried_, late, record().operations);
       !s.ok()) {
     return s;

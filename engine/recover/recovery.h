@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "engine/base/schedule.h"
@@ -28,7 +29,7 @@ using LevelForce = std::function<Status(int level, const MeshSpace& space, const
 
 struct RecoverySpec {
   Model model;
-  std::vector<double> isos;  // pi_I per level, normalised; [0] is that of I_0; NAN: no iso force
+  std::vector<double> isos;  // pi_I per level, normalised; [0] is that of I_0; empty: no iso force
   bool inside_above = true;
   double gradient_bound = 0.1;  // of (8): the largest norm, in window per U_h; used norms are <= 1
   int pad_voxels = 0;           // by which the pyramid's I_0 is larger than the input on every side
@@ -158,7 +159,10 @@ class Recovery {
   double delta_of(int h) const { return level_delta(pyramid_, h, spec_.anisotropy); }
   Status check_growth() const;
   double unit_of(int h) const;
-  float iso_of(int h) const { return static_cast<float>(spec_.isos[static_cast<size_t>(h)]); }
+  std::optional<float> iso_of(int h) const {
+    if (spec_.isos.empty()) return std::nullopt;
+    return static_cast<float>(spec_.isos[static_cast<size_t>(h)]);
+  }
   const PyramidLevel& image_of(int h) const { return pyramid_.levels[static_cast<size_t>(h)]; }
   LevelRecord& record() { return records_.back(); }
 

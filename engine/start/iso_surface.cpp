@@ -32,9 +32,9 @@ using Face = std::array<uint32_t, 3>;
 // The lattice: the voxels, and one point more on every side that is outside.
 class Lattice {
  public:
-  Lattice(const ImageView& image, const LatticeValues& values, float iso, bool inside_above)
-      : image_(image), values_(values), iso_(iso), above_(inside_above) {
-    for (size_t a = 0; a < 3; ++a) size_[a] = static_cast<size_t>(image.dims[a]) + 2;
+  Lattice(const ImageObject& object, const LatticeValues& values)
+      : image_(object.image), values_(values), iso_(object.iso), above_(object.above) {
+    for (size_t a = 0; a < 3; ++a) size_[a] = static_cast<size_t>(image_.dims[a]) + 2;
   }
 
   size_t slices() const { return size_[2]; }
@@ -120,9 +120,8 @@ struct EdgeIds {
 
 class Builder {
  public:
-  Builder(const ImageView& image, const LatticeValues& values, float iso, bool inside_above,
-          const Executor& executor)
-      : lattice_(image, values, iso, inside_above),
+  Builder(const ImageObject& object, const LatticeValues& values, const Executor& executor)
+      : lattice_(object, values),
         executor_(executor),
         layers_(lattice_.slices() - 1),
         first_id_(layers_ + 1, 0) {}
@@ -275,21 +274,20 @@ class Builder {
 
 }  // namespace
 
-Status iso_surface(const ImageView& image, const LatticeValues& values, float iso,
-                   bool inside_above, const Executor& executor, Mesh& mesh,
-                   Vector<uint64_t>* voxel) {
-  Builder builder(image, values, iso, inside_above, executor);
+Status iso_surface(const ImageObject& object, const LatticeValues& values, const Executor& executor,
+                   Mesh& mesh, Vector<uint64_t>* voxel) {
+  Builder builder(object, values, executor);
   if (Status s = builder.count(); !s.ok()) return s;
   builder.build(mesh, voxel);
   return {};
 }
 
-Status iso_surface(const ImageView& image, float iso, bool inside_above, const Executor& executor,
-                   Mesh& mesh) {
+Status iso_surface(const ImageObject& object, const Executor& executor, Mesh& mesh) {
+  const ImageView& image = object.image;
   const LatticeValues values{
       [&](int32_t y, int32_t z, float* row) { image_row(image, y, z, row); },
       [&](int32_t x, int32_t y, int32_t z) { return image_value(image, x, y, z); }};
-  return iso_surface(image, values, iso, inside_above, executor, mesh);
+  return iso_surface(object, values, executor, mesh);
 }
 
 }  // namespace plc

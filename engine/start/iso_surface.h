@@ -9,7 +9,7 @@
 #include <functional>
 
 #include "engine/mesh/mesh.h"
-#include "kernels/image.h"
+#include "engine/start/image_object.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
 #include "pyramid/status.h"
@@ -21,7 +21,7 @@ namespace plc {
 inline constexpr double kIsoMargin = 0.1;
 
 // Replaces what is in the mesh, but for delta, by the closed surface around the voxels that are
-// inside: of a value >= iso (inside_above) or <= iso; a NaN is outside. Faces are outward. What
+// inside: of the object. Faces are outward. What
 // reaches the image's border is closed half a voxel beyond it. Voxels that touch by a corner are
 // connected along (1,1,1), (1,1,0), (1,0,1), (0,1,1) and the axes, not along the other diagonals.
 //
@@ -31,8 +31,7 @@ inline constexpr double kIsoMargin = 0.1;
 //
 // Errors, the mesh unchanged: kInvalidData when all voxels are outside, kOutOfMemory for more
 // vertices than ids have room for; throws std::bad_alloc.
-Status iso_surface(const ImageView& image, float iso, bool inside_above, const Executor& executor,
-                   Mesh& mesh);
+Status iso_surface(const ImageObject& object, const Executor& executor, Mesh& mesh);
 
 // Values that are computed as they are asked for, by any thread: x fastest, as an image's.
 struct LatticeValues {
@@ -40,10 +39,9 @@ struct LatticeValues {
   std::function<float(int32_t x, int32_t y, int32_t z)> at;  // the same values
 };
 
-// The same of such values; of `image` dims, scale and offset are read alone. `voxel` gets, for each
-// vertex, a number of the voxel inside on whose edge it lies.
-Status iso_surface(const ImageView& image, const LatticeValues& values, float iso,
-                   bool inside_above, const Executor& executor, Mesh& mesh,
-                   Vector<uint64_t>* voxel = nullptr);
+// The same of such values; of the image dims, scale and offset are read alone. `voxel` gets, for
+// each vertex, a number of the voxel inside on whose edge it lies.
+Status iso_surface(const ImageObject& object, const LatticeValues& values, const Executor& executor,
+                   Mesh& mesh, Vector<uint64_t>* voxel = nullptr);
 
 }  // namespace plc

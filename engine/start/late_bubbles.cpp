@@ -21,21 +21,21 @@ namespace {
 // side of iso. Its values are made as they are asked for: it may be as large as the image.
 class Cutout {
  public:
-  Cutout(const ImageView& image, float iso, bool above, const MissedPlaces& places, Missed kind)
-      : image_(image),
-        iso_(iso),
-        up_(above == (kind == Missed::kPart)),
+  Cutout(const ImageObject& object, const MissedPlaces& places, Missed kind)
+      : image_(object.image),
+        iso_(object.iso),
+        up_(object.above == (kind == Missed::kPart)),
         voxels_(places.voxels[static_cast<size_t>(kind)]),
-        view_(image) {
+        view_(object.image) {
     const auto k = static_cast<size_t>(kind);
     for (size_t a = 0; a < 3; ++a) {
       // The places end a voxel from the border of the cutout: what is beyond is outside.
       first_[a] = places.low[k][a] - 1;
       view_.dims[a] = places.high[k][a] - first_[a] + 2;
-      view_.offset[a] = image.offset[a] - static_cast<float>(first_[a]);
+      view_.offset[a] = image_.offset[a] - static_cast<float>(first_[a]);
     }
   }
-  const ImageView& view() const { return view_; }  // dims, scale and offset
+  ImageObject object() const { return {view_, 0, true}; }  // dims, scale and offset
   LatticeValues values() const {
     return {[this](int32_t y, int32_t z, float* row) { read_row(y, z, row); },
             [this](int32_t x, int32_t y, int32_t z) { return value(x, y, z); }};
@@ -95,23 +95,22 @@ double volume_of(const Mesh& mesh, const Executor& executor) {
 
 }  // namespace
 
-Status start_late_bubbles(const ImageView& image, float iso, bool inside_above,
-                          const Schedule& schedule, SimdTarget simd, Mesh& mesh, VoxelSet& tried,
-                          LateBubbles& started, OperationCounts& counts) {
+Status start_late_bubbles(const ImageObject& object, const Schedule& schedule, SimdTarget simd,
+                          Mesh& mesh, VoxelSet& tried, LateBubbles& started,
+                          OperationCounts& counts) {
   const auto delta = static_cast<float>(mesh.delta);
   // A vertex of an iso-surface lies at most 0.9 of a voxel's diagonal from a voxel of the place.
   float diagonal = 0;
-  for (const float scale : image.scale) diagonal += 1 / (scale * scale);
+  for (const float scale : object.image.scale) diagonal += 1 / (scale * scale);
   const float clearance = kBubbleGap * delta + 0.9F * std::sqrt(diagonal);
-  const MissedPlaces places = find_missed_places(mesh, image, iso, inside_above, clearance,
-                                                 kSmallestBubble * delta, schedule, tried);
+  const MissedPlaces places =
+      find_missed_places(mesh, object, clearance, kSmallestBubble * delta, schedule, tried);
   for (const Missed kind : {Missed::kPart, Missed::kCavity}) {
     const int64_t count = places.count[static_cast<size_t>(kind)];
     if (count == 0) continue;
-    const Cutout cutout(image, iso, inside_above, places, kind);
+    const Cutout cutout(object, places, kind);
     Mesh part;
-    if (Status s =
-            regular_iso_surface(cutout.view(), cutout.values(), 0, true, schedule, simd, part);
+    if (Status s = regular_iso_surface(cutout.object(), cutout.values(), schedule, simd, part);
         !s.ok()) {
       return s;
     }

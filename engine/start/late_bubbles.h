@@ -6,8 +6,8 @@
 #include "engine/base/schedule.h"
 #include "engine/base/statistics.h"
 #include "engine/mesh/mesh.h"
+#include "engine/start/image_object.h"
 #include "engine/start/voxel_set.h"
-#include "kernels/image.h"
 #include "kernels/simd.h"
 #include "pyramid/status.h"
 
@@ -29,8 +29,8 @@ struct LateBubbles {
 // started is put in. Nothing of the image's size is allocated: sets of voxels are held where they
 // are. The surface stays embedded. `started` and `counts` grow. The same bits for any number of
 // threads. Errors: those of conform.h, but for parts of which nothing is left.
-Status start_late_bubbles(const ImageView& image, float iso, bool inside_above,
-                          const Schedule& schedule, SimdTarget simd, Mesh& mesh, VoxelSet& tried,
-                          LateBubbles& started, OperationCounts& counts);
+Status start_late_bubbles(const ImageObject& object, const Schedule& schedule, SimdTarget simd,
+                          Mesh& mesh, VoxelSet& tried, LateBubbles& started,
+                          OperationCounts& counts);
 
 }  // namespace plc

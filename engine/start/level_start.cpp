@@ -1,6 +1,7 @@
 #include "engine/start/level_start.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -35,12 +36,10 @@ struct VoxelBox {
 };
 
 // Grows the box by the voxels of slice z on the object's side of iso.
-void add_slice(const LevelImage& level, int64_t z, VoxelBox& box) {
-  const ImageView image = level_image(image_of(level));
+void add_slice(const ImageObject& object, int64_t z, VoxelBox& box) {
+  const ImageView& image = object.image;
   Vector<float> row(static_cast<size_t>(image.dims[0]));
-  const auto is_object = [&](float v) {
-    return level.inside_above ? v >= level.iso : v <= level.iso;
-  };
+  const auto is_object = [&](float v) { return object.has(v); };
   for (int64_t y = 0; y < image.dims[1]; ++y) {
     image_row(image, y, z, row.data());
     const auto first = std::find_if(row.begin(), row.end(), is_object);
@@ -59,9 +58,10 @@ void add_slice(const LevelImage& level, int64_t z, VoxelBox& box) {
 // is empty.
 bool object_extent(const LevelImage& level, const Executor& executor, Extent& box) {
   const PyramidLevel& image = image_of(level);
+  const ImageObject object{level_image(image), *level.iso, level.inside_above};
   Vector<VoxelBox> slices(static_cast<size_t>(image.dims[2]), VoxelBox{image.dims, {-1, -1, -1}});
   executor.run(slices.size(),
-               [&](size_t z) { add_slice(level, static_cast<int64_t>(z), slices[z]); });
+               [&](size_t z) { add_slice(object, static_cast<int64_t>(z), slices[z]); });
   std::array<int64_t, 3> low = image.dims;
   std::array<int64_t, 3> high{-1, -1, -1};
   for (const VoxelBox& slice : slices) {
@@ -220,8 +220,9 @@ Status make_mesh(const StartSpec& spec, const LevelImage& level, const Executor&
 
 // Every so many voxels of an image that is finer than delta on some axis (level_delta): a surface
 // that follows all of them is so crowded that conform() takes minutes.
-Status coarse_iso_surface(const ImageView& view, const std::array<int32_t, 3>& stride, float iso,
-                          bool inside_above, const Executor& executor, Mesh& mesh) {
+Status coarse_iso_surface(const ImageObject& object, const std::array<int32_t, 3>& stride,
+                          const Executor& executor, Mesh& mesh) {
+  const ImageView& view = object.image;
   ImageView coarse = view;
   for (size_t a = 0; a < 3; ++a) {
     const auto step = static_cast<float>(stride[a]);
@@ -236,19 +237,19 @@ Status coarse_iso_surface(const ImageView& view, const std::array<int32_t, 3>& s
   const auto row = [&](int32_t y, int32_t z, float* values) {
     for (int32_t x = 0; x < coarse.dims[0]; ++x) values[x] = at(x, y, z);
   };
-  return iso_surface(coarse, {row, at}, iso, inside_above, executor, mesh);
+  return iso_surface({coarse, object.iso, object.above}, {row, at}, executor, mesh);
 }
 
 // An image without the object is no error: the next finer level may show it.
-Status make_iso(const ImageView& view, float iso, bool inside_above, double delta,
-                const Executor& executor, Mesh& mesh) {
+Status make_iso(const ImageObject& object, double delta, const Executor& executor, Mesh& mesh) {
   std::array<int32_t, 3> stride{};
   for (size_t a = 0; a < 3; ++a) {
-    stride[a] = std::max(1, static_cast<int32_t>(delta * static_cast<double>(view.scale[a])));
+    stride[a] =
+        std::max(1, static_cast<int32_t>(delta * static_cast<double>(object.image.scale[a])));
   }
   Status s = stride == std::array<int32_t, 3>{1, 1, 1}
-                 ? iso_surface(view, iso, inside_above, executor, mesh)
-                 : coarse_iso_surface(view, stride, iso, inside_above, executor, mesh);
+                 ? iso_surface(object, executor, mesh)
+                 : coarse_iso_surface(object, stride, executor, mesh);
   return s.code() == ErrorCode::kInvalidData ? Status() : s;
 }
 
@@ -262,19 +263,20 @@ Status start_surface(const StartSpec& spec, const LevelImage& level, double delt
   Status made;
   switch (spec.init) {
     case Init::kBubble:
-      if (std::isnan(level.iso)) box = image_extent(level);
-      if (!std::isnan(level.iso) && !object_extent(level, schedule, box)) return {};
+      if (!level.iso) box = image_extent(level);
+      if (level.iso && !object_extent(level, schedule, box)) return {};
       return bubble_around(box, delta, schedule, simd, mesh);
     case Init::kBubbles:
       return make_bubbles(mesh, image_extent(level), spec.bubbles, delta, schedule);
     case Init::kSeeds:
       return make_seeds(spec, level, delta, schedule, simd, mesh);
     case Init::kIso:
-      made = make_iso(view_of(level, level.pyramid), level.iso, level.inside_above, delta, schedule,
-                      mesh);
+      assert(level.iso);
+      made = make_iso({view_of(level, level.pyramid), *level.iso, level.inside_above}, delta,
+                      schedule, mesh);
       break;
     case Init::kMask:
-      made = make_iso(view_of(level, spec.mask), 0.5F, true, delta, schedule, mesh);
+      made = make_iso({view_of(level, spec.mask), 0.5F, true}, delta, schedule, mesh);
       break;
     case Init::kMesh:
       made = make_mesh(spec, level, schedule, mesh);

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/base/schedule.h"
@@ -44,7 +45,7 @@ struct LevelImage {
   int h;
   int pad;  // voxels by which I_0 is larger than the input on every side
   MeshSpace space;
-  float iso;  // NAN: nothing tells the object, a bubble goes around the whole image
+  std::optional<float> iso;  // none: nothing tells the object, a bubble goes around the whole image
   bool inside_above;
 };
 

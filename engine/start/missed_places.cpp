@@ -18,8 +18,8 @@ using Sets = std::array<VoxelSet, 2>;  // by Missed
 // The voxels on which the image and the surface disagree.
 class Disagreement {
  public:
-  Disagreement(const Mesh& mesh, const ImageView& image, float iso, bool above)
-      : image_(image), iso_(iso), above_(above), sides_(mesh, image) {}
+  Disagreement(const Mesh& mesh, const ImageObject& object)
+      : image_(object.image), iso_(object.iso), above_(object.above), sides_(mesh, object.image) {}
 
   void add(int32_t z, Sets& missed) const {
     constexpr size_t kWord = sizeof(uint64_t);
@@ -209,12 +209,12 @@ class Search {
 
 }  // namespace
 
-MissedPlaces find_missed_places(const Mesh& mesh, const ImageView& image, float iso,
-                                bool inside_above, float clearance, float radius,
-                                const Executor& executor, VoxelSet& tried) {
+MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object, float clearance,
+                                float radius, const Executor& executor, VoxelSet& tried) {
+  const ImageView& image = object.image;
   Sets missed{VoxelSet(image.dims), VoxelSet(image.dims)};
   {
-    const Disagreement disagreement(mesh, image, iso, inside_above);
+    const Disagreement disagreement(mesh, object);
     executor.run(static_cast<size_t>(image.dims[2]),
                  [&](size_t z) { disagreement.add(static_cast<int32_t>(z), missed); });
   }

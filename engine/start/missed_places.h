@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "engine/mesh/mesh.h"
+#include "engine/start/image_object.h"
 #include "engine/start/voxel_set.h"
-#include "kernels/image.h"
 #include "pyramid/executor.h"
 
 namespace plc {
@@ -21,13 +21,11 @@ struct MissedPlaces {
   bool is(const Voxel& voxel, Missed m) const { return voxels[static_cast<size_t>(m)].has(voxel); }
 };
 
-// Places are sets of voxels connected by faces, edges or corners: of the object (a value >= iso, or
-// <= iso), outside the surface - or not of it, and inside - and none within `clearance` of a vertex
-// (mesh units). Those that hold no ball of `radius`, and those with a voxel that `tried` holds, are
-// left out; the others are put into it, which is of the image's voxels or of none yet. The same for
-// any executor.
-MissedPlaces find_missed_places(const Mesh& mesh, const ImageView& image, float iso,
-                                bool inside_above, float clearance, float radius,
-                                const Executor& executor, VoxelSet& tried);
+// Places are sets of voxels connected by faces, edges or corners: of the object, outside the
+// surface - or not of it, and inside - and none within `clearance` of a vertex (mesh units). Those
+// that hold no ball of `radius`, and those with a voxel that `tried` holds, are left out; the
+// others are put into it, which is of the image's voxels or of none yet. The same for any executor.
+MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object, float clearance,
+                                float radius, const Executor& executor, VoxelSet& tried);
 
 }  // namespace plc

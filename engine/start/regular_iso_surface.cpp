@@ -138,16 +138,15 @@ bool set_apart(const Mesh& mesh, const Schedule& schedule, SimdTarget simd,
 
 }  // namespace
 
-Status regular_iso_surface(const ImageView& image, const LatticeValues& values, float iso,
-                           bool inside_above, const Schedule& schedule, SimdTarget simd,
-                           Mesh& mesh) {
+Status regular_iso_surface(const ImageObject& object, const LatticeValues& values,
+                           const Schedule& schedule, SimdTarget simd, Mesh& mesh) {
   Vector<uint64_t> voxel;
-  if (Status s = iso_surface(image, values, iso, inside_above, schedule, mesh, &voxel); !s.ok()) {
+  if (Status s = iso_surface(object, values, schedule, mesh, &voxel); !s.ok()) {
     return s;
   }
   const Mesh crossings = mesh.copy();
   Vector<uint8_t> apart(mesh.slots(), 0);
-  const Projection projection(image, values, iso);
+  const Projection projection(object.image, values, object.iso);
   for (int i = 0; i < kTries; ++i) {
     Merging(mesh, voxel, apart).run(projection);
     if (!set_apart(mesh, schedule, simd, voxel, apart)) {

@@ -14,8 +14,7 @@
 namespace plc {
 
 // As iso_surface(); embedded, with other vertices, and without gaps in the ids.
-Status regular_iso_surface(const ImageView& image, const LatticeValues& values, float iso,
-                           bool inside_above, const Schedule& schedule, SimdTarget simd,
-                           Mesh& mesh);
+Status regular_iso_surface(const ImageObject& object, const LatticeValues& values,
+                           const Schedule& schedule, SimdTarget simd, Mesh& mesh);
 
 }  // namespace plc

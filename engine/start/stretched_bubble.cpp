@@ -57,7 +57,7 @@ Status make_stretched_bubble(Mesh& mesh, const std::array<double, 3>& middle,
                                  row[x] = value(x, y, z);
                              },
                              value};
-  if (Status s = iso_surface(lattice, values, 0, true, schedule, mesh); !s.ok()) return s;
+  if (Status s = iso_surface({lattice, 0, true}, values, schedule, mesh); !s.ok()) return s;
   OperationCounts counts;  // what the making of a start takes is none of a level's
   Status s = conform(mesh, kCoarser * delta, schedule, simd, counts);
   mesh.delta = delta;

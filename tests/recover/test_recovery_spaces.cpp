@@ -139,8 +139,8 @@ TEST_CASE("strong smoothing keeps the sphere round only where the mesh lives in 
 TEST_CASE("a thin bright shell is found by the gradient force alone", "[recovery]") {
   // The fluorescent shell of figure 22, with its coefficients. The springs draw the bubble in
   // until the gradient at the shell holds it.
-  Run run = samples::make_run("shell", samples::shell(samples::empty_volume({40, 40, 40})),
-                              std::nan(""), 0);
+  Run run = samples::make_run("shell", samples::shell(samples::empty_volume({40, 40, 40})), 0, 0);
+  run.recovery.isos.clear();
   run.recovery.start.init = plc::Init::kSeeds;
   run.recovery.start.seeds = {{{19.5, 19.5, 19.5}, {19, 19, 19}}};
   plc::Model& model = run.recovery.model;

@@ -158,7 +158,7 @@ TEST_CASE("iso-surfaces of noisy images conform", "[conform]") {
   samples::add_noise(ball, 0.8, 5);
   for (const Volume& v : {chain, ball, samples::noise(shape, 5, 3)}) {
     Mesh mesh;
-    REQUIRE(plc::iso_surface(view_of(v), 0.5F, true, samples::kSerial, mesh).ok());
+    REQUIRE(plc::iso_surface({view_of(v), 0.5F, true}, samples::kSerial, mesh).ok());
     conformed(mesh, 1 / plc::kUnitPerDelta);
   }
 }
@@ -211,7 +211,7 @@ TEST_CASE("a surface conforms to the same bits with any number of threads", "[co
   std::vector<uint64_t> hashes;
   for (const int threads : {1, 2, 3}) {
     Mesh mesh;
-    REQUIRE(plc::iso_surface(view_of(v), 0.5F, true, samples::kSerial, mesh).ok());
+    REQUIRE(plc::iso_surface({view_of(v), 0.5F, true}, samples::kSerial, mesh).ok());
     OperationCounts counts;
     REQUIRE(try_conform(mesh, 0.8, counts, threads).ok());
     hashes.push_back(plc::state_hash(mesh));

@@ -28,7 +28,8 @@ plc::ImageView view_of(const Volume& v) {
 }
 
 void extract(Mesh& mesh, const Volume& v, float iso, bool inside_above = true) {
-  REQUIRE(plc::iso_surface(view_of(v), iso, inside_above, samples::kSerial, mesh).message() == "");
+  REQUIRE(plc::iso_surface({view_of(v), iso, inside_above}, samples::kSerial, mesh).message() ==
+          "");
 }
 
 // Everything that a surface must be, and its measures.
@@ -168,7 +169,7 @@ TEST_CASE("positions are of mesh space", "[iso_surface]") {
     view.offset[a] = offset[a];
   }
   scaled.delta = 0.4;
-  REQUIRE(plc::iso_surface(view, 0.5F, true, samples::kSerial, scaled).ok());
+  REQUIRE(plc::iso_surface({view, 0.5F, true}, samples::kSerial, scaled).ok());
   REQUIRE(plain.slots() == scaled.slots());
   CHECK(scaled.delta == 0.4);
   for (uint32_t u = 0; u < plain.slots(); ++u) {
@@ -183,7 +184,7 @@ TEST_CASE("no voxel inside is an error, and what is not a number is outside", "[
   extract(mesh, constant({3, 3, 3}, 1), 0.5F);
   const uint32_t before = mesh.slots();
   const plc::Status status =
-      plc::iso_surface(view_of(constant({3, 3, 3}, 0)), 0.5F, true, samples::kSerial, mesh);
+      plc::iso_surface({view_of(constant({3, 3, 3}, 0)), 0.5F, true}, samples::kSerial, mesh);
   CHECK(status.code() == plc::ErrorCode::kInvalidData);
   CHECK(status.message() == "no iso-surface: no voxel of the image is inside; check the iso-value");
   CHECK(mesh.slots() == before);
@@ -199,7 +200,7 @@ TEST_CASE("iso-surfaces are the same bits for any number of threads", "[iso_surf
   for (const int threads : {1, 2, 3}) {
     const plc::Schedule schedule(threads);
     Mesh mesh;
-    REQUIRE(plc::iso_surface(view_of(v), 0.5F, true, schedule, mesh).ok());
+    REQUIRE(plc::iso_surface({view_of(v), 0.5F, true}, schedule, mesh).ok());
     hashes.push_back(plc::state_hash(mesh));
   }
   CHECK(hashes[0] == hashes[1]);

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <optional>
 
 #include "engine/base/constants.h"
 #include "engine/mesh/state_hash.h"
@@ -18,7 +19,6 @@ using plc::Seed;
 using plc::StartSpec;
 using samples::Soup;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // 28 x 28 x 14 voxels of 1 x 1 x 2 mm; a ball of 9.8 mm about their middle.
 constexpr double kRadius = 9.8;
 
@@ -40,12 +40,11 @@ struct Started {
   Mesh mesh;
   double cubic_mm = 1;  // of a mesh unit, cubed
 
-  Started(const StartSpec& spec, int h, Anisotropy method = Anisotropy::kVoxel, double iso = 0.5,
-          const samples::Run& run = ball_run(), int threads = 1)
+  Started(const StartSpec& spec, int h, Anisotropy method = Anisotropy::kVoxel,
+          std::optional<float> iso = 0.5F, const samples::Run& run = ball_run(), int threads = 1)
       : pyramid(samples::pyramid_of(run)) {
     const plc::MeshSpace space = plc::mesh_space(pyramid, h, method);
-    const plc::LevelImage level{
-        pyramid, h, plc::kPadVoxels, space, static_cast<float>(iso), run.recovery.inside_above};
+    const plc::LevelImage level{pyramid, h, plc::kPadVoxels, space, iso, run.recovery.inside_above};
     delta =
         pyramid.levels[static_cast<size_t>(h)].unit / pyramid.levels[0].unit / plc::kUnitPerDelta;
     for (size_t a = 0; a < 3; ++a) cubic_mm *= pyramid.levels[0].voxel[a] / space.step[a];
@@ -120,7 +119,7 @@ TEST_CASE("one bubble goes around the object, in every space and on every level"
 }
 
 TEST_CASE("where no iso tells the object a bubble goes around the whole image", "[level_start]") {
-  const Started s(of(Init::kBubble), 1, Anisotropy::kVoxel, kNan);
+  const Started s(of(Init::kBubble), 1, Anisotropy::kVoxel, std::nullopt);
   check_sound(s, false);
   for (const double x : {-0.4, 27.4}) {
     bool beyond = false;
@@ -135,7 +134,7 @@ TEST_CASE("where no iso tells the object a bubble goes around the whole image", 
 
 TEST_CASE("an object that does not show leaves the mesh empty, and is no error", "[level_start]") {
   for (const Init init : {Init::kBubble, Init::kIso}) {
-    const Started s(of(init), 1, Anisotropy::kVoxel, 0.999);
+    const Started s(of(init), 1, Anisotropy::kVoxel, 0.999F);
     CHECK(s.status.ok());
     CHECK(s.mesh.vertex_count() == 0);
   }
@@ -219,7 +218,7 @@ TEST_CASE("the iso-surface of the level's image starts near its object", "[level
 TEST_CASE("a dark object's iso-surface is around what is below iso", "[level_start]") {
   samples::Run run = ball_run();
   samples::turn_dark(run);
-  const Started s(of(Init::kIso), 0, Anisotropy::kVoxel, 0.5, run);
+  const Started s(of(Init::kIso), 0, Anisotropy::kVoxel, 0.5F, run);
   check_sound(s, true);
   CHECK(s.volume() == Approx(ball_volume(kRadius)).epsilon(0.1));
 }
@@ -228,7 +227,7 @@ TEST_CASE("an iso-surface smaller than the level resolves leaves the mesh empty"
   samples::Run run = samples::make_run("spot", samples::empty_volume({20, 20, 20}), 0.5, 0);
   run.volume.values.assign(8000, 0);
   run.volume.values[(10 * 20 + 10) * 20 + 10] = 0.51F;
-  const Started s(of(Init::kIso), 0, Anisotropy::kVoxel, 0.5, run);
+  const Started s(of(Init::kIso), 0, Anisotropy::kVoxel, 0.5F, run);
   CHECK(s.status.ok());
   CHECK(s.mesh.vertex_count() == 0);
 }
@@ -241,7 +240,7 @@ TEST_CASE("a mask starts its own surface, whatever the image shows", "[level_sta
   });
   spec.mask = samples::pyramid_of(run);
   for (const Anisotropy method : kMethods) {
-    const Started s(spec, 0, method, kNan);
+    const Started s(spec, 0, method, std::nullopt);
     check_sound(s, true);
     CHECK(samples::euler(s.mesh) == 2);
     CHECK(s.volume() == Approx(ball_volume(7)).epsilon(0.15));

@@ -32,8 +32,8 @@ Both surfaces_of(const samples::Volume& volume, float iso, int threads = 1) {
       [&](int32_t x, int32_t y, int32_t z) { return plc::image_value(view, x, y, z); }};
   const plc::Schedule schedule(threads);
   Both both;
-  REQUIRE(plc::iso_surface(view, values, iso, true, schedule, both.plain).ok());
-  REQUIRE(plc::regular_iso_surface(view, values, iso, true, schedule, plc::best_simd_target(),
+  REQUIRE(plc::iso_surface({view, iso, true}, values, schedule, both.plain).ok());
+  REQUIRE(plc::regular_iso_surface({view, iso, true}, values, schedule, plc::best_simd_target(),
                                    both.regular)
               .ok());
   return both;

@@ -62,7 +62,7 @@ TEST_CASE("the bubble around a long image, and a ball of millimetres in flat vox
       "rod", samples::sphere_potential(samples::empty_volume({8, 300, 8}), 0.3), 0.5, 0);
   const plc::Pyramid pyramid = samples::pyramid_of(run);
   plc::StartSpec start;
-  const plc::LevelImage level{pyramid, 0, run.recovery.pad_voxels, {}, NAN, true};
+  const plc::LevelImage level{pyramid, 0, run.recovery.pad_voxels, {}, {}, true};
   for (const plc::Init init : {plc::Init::kBubble, plc::Init::kSeeds}) {
     start.init = init;
     start.seeds = {{{4, 150, 4}, {3, 40, 3}}};

@@ -116,7 +116,7 @@ TEST_CASE("an iso-surface encloses the voxels that it was made around", "[voxel_
   ImageView image = view({24, 20, 22});
   image.data = volume.values.data();
   Mesh mesh;
-  REQUIRE(plc::iso_surface(image, 0.4F, true, samples::kSerial, mesh).ok());
+  REQUIRE(plc::iso_surface({image, 0.4F, true}, samples::kSerial, mesh).ok());
   const plc::Vector<uint8_t> inside = sides(mesh, image);
   size_t wrong = 0, in = 0;
   for (size_t i = 0; i < inside.size(); ++i) {
