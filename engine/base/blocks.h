@@ -9,7 +9,7 @@
 
 namespace plc {
 
-// Of kRingLanes vertices, per task.
+// Blocks of kRingLanes vertices that one task works on.
 inline constexpr size_t kTaskBlocks = kGrain / kRingLanes;
 
 inline size_t block_count(size_t count, size_t block) {

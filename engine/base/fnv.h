@@ -1,4 +1,5 @@
-// 64-bit FNV-1a: what recorded results are compared by.
+// 64-bit FNV-1a: what recorded results are compared by. Not a library's hash: it is a line of code,
+// must be the same for ever, and is not where the time goes.
 #pragma once
 #include <bit>
 #include <concepts>

@@ -1,4 +1,6 @@
-// A sort whose pieces, and merges of two, are tasks.
+// A sort whose pieces, and merges of two, are tasks. Not tbb::parallel_sort: it must run on
+// whatever executor there is, the threads that a host lends and the calling thread alone among
+// them.
 #pragma once
 #include <algorithm>
 #include <bit>

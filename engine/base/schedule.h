@@ -119,11 +119,11 @@ class Schedule final : public Executor {
   explicit Schedule(const Threads& threads);
   explicit Schedule(int threads) : Schedule(Threads{threads}) {}
   ~Schedule() override;
-  // That loops may run on; 0: the host knows.
+  // How many threads loops may run on; 0: only the host knows.
   int threads() const;
 
-  // With one thread, or one task, on the calling thread. What a task throws - one of them, if
-  // several do - is thrown when all have ended.
+  // On the calling thread where there is one thread, or one task. When tasks throw, one of their
+  // exceptions is thrown on after all have ended.
   void run(size_t tasks, const std::function<void(size_t)>& body) const override;
   // Runs the table. `small`: in order, on the calling thread. `after`, which may be empty, is
   // called at the same places of the table for any number of threads, while no pass runs. Where a

@@ -8,12 +8,12 @@
 
 namespace plc {
 
-// A task finds in what it is lent whatever another one left there: results must not depend on it.
-// As many are made as tasks run at once. Thread-safe.
+// An object is lent as the last task left it: results must not depend on what is in it. As many are
+// made as tasks run at once. Thread-safe.
 template <typename T>
 class Spares {
  public:
-  // Until it is destroyed, which must be before the Spares are.
+  // An object on loan, given back when this is destroyed; the Spares must still be there then.
   class Lent {
    public:
     Lent(Spares& from, std::unique_ptr<T> object) : from_(from), object_(std::move(object)) {}

@@ -7,12 +7,13 @@
 
 namespace plc {
 
-// Values as they lie in memory: for the library's own version and byte order (api_run_state.cpp).
+// Writes values as they lie in memory: only the same version of the library, on a machine of the
+// same byte order, reads them (api_run_state.cpp).
 class StateWriter {
  public:
-  // Counts what would be written.
+  // Writes nothing, and counts the bytes.
   StateWriter() = default;
-  // to: room for as much as was counted.
+  // to: room for as many bytes as were counted.
   explicit StateWriter(uint8_t* to) : to_(to) {}
   template <typename T>
   void add(const T& value) {
@@ -31,7 +32,7 @@ class StateWriter {
     add(static_cast<uint64_t>(count));
     add_bytes(values.data(), count * sizeof(*values.data()));
   }
-  // Bytes so far.
+  // How many bytes have been added so far.
   size_t size() const { return size_; }
   // The first of them; null where they are only counted.
   const uint8_t* data() const { return to_; }
@@ -85,7 +86,7 @@ class StateReader {
                   values.size() * kSize);
     }
   }
-  // Of what was read.
+  // To be called with what must hold of the values that were read: ok() is false where it does not.
   void demand(bool condition) { ok_ = ok_ && condition; }
   bool ok() const { return ok_; }
   size_t left() const { return left_; }

@@ -22,10 +22,11 @@ class TbbArena {
   // task(0, data) .. task(tasks - 1, data), each once; returns when all have ended. They compute as
   // this thread does, may run loops of their own, and do not throw.
   void run(size_t tasks, Task task, void* data);
-  // task(0, data), now or later or never, on another thread. Throws where that cannot be had.
+  // Asks for task(0, data) on another thread: it runs now, later or never. Throws where no task can
+  // be made.
   void enqueue(Task task, void* data);
 
-  // That oneTBB has for the process: the host's to control.
+  // How many threads oneTBB uses in this process at most: the host decides.
   static int threads_of_process();
   static int threads_of_caller();
 

@@ -24,8 +24,6 @@ class TinyComponents {
   // or nearly vanished. Returns how many were deleted. The sign of a component whose known vertex
   // is gone is taken anew: what the movement has turned over must have been deleted before.
   int64_t update(Mesh& mesh, const Vector<uint32_t>& changed);
-  // Forgets all: ids have changed.
-  void clear() { watched_.clear(); }
   // What is followed, for a mesh of so many ids.
   void save(StateWriter& to) const { to.add_all(watched_); }
   void restore(StateReader& from, uint32_t slots);

@@ -38,7 +38,8 @@ struct Proposal {
   bool embedded = false;
 };
 
-// On the place of creation.h.
+// Proposals for the transformations of the same names, as the headers of transform/ do them; the
+// new vertex of a creation lies where creation.h puts it.
 Proposal propose_creation(const Mesh& mesh, const Edge& edge);
 Proposal propose_inversion(const Mesh& mesh, const Edge& edge);
 Proposal propose_deletion(const Mesh& mesh, const Edge& edge, Vec3 place);

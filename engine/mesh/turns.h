@@ -41,19 +41,19 @@ inline bool frozen(uint8_t state) {
 inline uint8_t with_turns(uint8_t state, uint32_t turns) {
   return static_cast<uint8_t>((state & ~kernels::kTurnsMask) | std::min(turns, kFrozenTurns));
 }
-// After so many more.
+// The state after so many more turns.
 inline uint8_t turned(uint8_t state, uint32_t turns) {
   return with_turns(state, turns_of(state) + turns);
 }
-// After a movement to a side, 1 or 2, or one too slow to count, 0. Without branches: it is run over
-// whole blocks.
+// The state after a movement to a side of the surface, 1 or 2, or one too slow to count, 0. Without
+// branches: it is run over whole blocks.
 inline uint8_t moved_to_side(uint8_t state, uint32_t side) {
   const uint32_t last = uint32_t{state} >> kSideShift;
   const uint32_t turn = static_cast<uint32_t>(side + last == 3);
   return static_cast<uint8_t>(std::min(turns_of(state) + turn, kFrozenTurns) |
                               (side == 0 ? last : side) << kSideShift);
 }
-// Of a vertex between two others.
+// The state of a new vertex between two others.
 inline uint8_t turns_between(uint8_t a, uint8_t b) {
   return with_turns(0, (turns_of(a) + turns_of(b) + 1) / 2);
 }

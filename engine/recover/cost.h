@@ -21,9 +21,9 @@ struct Cost {
   double bytes = 0;     // of that level's mesh and of what works on it
 };
 
-// From the voxels' faces between the object and what surrounds it. Smooth objects come out within a
-// third; of noise, which the mesh does not follow, it is too much. isos: of each
-// level; a NaN tells nothing.
+// Estimated from the voxels' faces between the object and what surrounds it. For smooth objects it
+// is right within a third; for noise, which the mesh does not follow, it is too much. isos: of each
+// level; where there are none nothing is known, and the cost is 0 but for the voxels.
 Cost expected_cost(const Pyramid& pyramid, const std::vector<double>& isos, bool inside_above,
                    int pad, Anisotropy anisotropy, const Executor& executor);
 

@@ -118,13 +118,14 @@ class Recovery {
 
  private:
   enum class Phase : uint8_t { kStart, kIterate, kCheck, kVerify, kRoundEnd, kVerdict };
-  // What sleeps tells nothing: all are woken, and only when they are calm the level has converged.
+  // Vertices that sleep do not move, whether they are at rest or not. So all are woken before a
+  // level ends, and it has converged when they stay calm.
   struct Confirmation {
     int since = 0;       // iteration in which all were woken; 0: they were not
     int not_before = 0;  // iteration in which they may be woken again
   };
-  // Of a level's evolution, until it converges or for max_iterations, which the rounds after late
-  // bubbles share.
+  // A level's iterations until it converges or max_iterations are used up; the rounds after late
+  // bubbles share theirs.
   struct Round {
     int number = 0;
     bool late = false;

@@ -168,8 +168,8 @@ Vector<Candidate> Resolution::edge_candidates(const Vector<uint32_t>& queue) {
   return collect_sorted(executor_, queue.size(), kChunk, std::less<Candidate>(), collect);
 }
 
-// One pass over (3); false when nothing was left to do. The first pass takes what take_due() has
-// found; all look again around what has changed since.
+// One pass over (3); false when nothing was left to do. The first pass takes the pairs that the
+// detection has found; all look again around what has changed since.
 bool Resolution::resolve_pairs(bool first, OperationCounts& counts) {
   unique(pair_queue_);
   const Vector<Candidate> candidates = pair_candidates(pair_queue_, first);
@@ -221,7 +221,8 @@ void Resolution::apply_round(const Vector<Candidate>& candidates, Vector<uint32_
   }
 }
 
-// Those whose turn it will be if all before them are admitted. trial: of each candidate.
+// Asks the guard, in parallel, about the candidates that will have their turn if it admits all that
+// come before them. trial[i] becomes the number of candidate i's trial, or kUntried.
 void Resolution::try_candidates(const Candidate* candidates, size_t count, size_t* trial) {
   const uint32_t claim = ++stamps_;
   tried_.clear();

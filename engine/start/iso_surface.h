@@ -20,8 +20,8 @@ namespace plc {
 // degenerates and rounding has room. 0 would give faces of zero area, 1/2 a surface of steps.
 inline constexpr double kIsoMargin = 0.1;
 
-// Replaces what is in the mesh, but for delta, by the closed surface around the voxels that are
-// inside: of the object. Faces are outward. What
+// Replaces what is in the mesh, but for delta, by the closed surface around the voxels of
+// the object. Faces are outward. What
 // reaches the image's border is closed half a voxel beyond it. Voxels that touch by a corner are
 // connected along (1,1,1), (1,1,0), (1,0,1), (0,1,1) and the axes, not along the other diagonals.
 //

@@ -1,4 +1,5 @@
-// Where an image and a surface disagree about the side, too far from the surface to be its matter.
+// Where an image and a surface disagree about what is inside, too far from the surface for it to
+// get there by moving.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -149,7 +149,8 @@ class LabelExtraction {
     return self.interrupt_.interrupted() ? 1 : 0;
   }
 
-  // Leaves the piece's surface as it is where there is none as it is told now. False: cancelled.
+  // Makes the surface of the piece with its margin of now; where that holds none the piece keeps
+  // the one that it has. False: cancelled.
   bool extract(Piece& piece) {
     const double begin = now();
     const LabelCrop crop = crop_label(volume_.image, piece.label);

@@ -5,10 +5,10 @@ namespace plc::tools {
 
 constexpr int kExitInterrupted = 130;
 
-// From the first one on, for good, these signals do what it was told last: at first, end_at_once().
-// Ending is a line on stderr, but none where the reader of a pipe has gone, which is told to
-// nobody; the temporary files of output files are removed. SIGHUP stays ignored where it is
-// (nohup). One at a time.
+// From the first guard on and until the process ends, these signals do what the last call of a
+// guard chose; at first that is end_at_once(). A process that ends by one writes a line to stderr -
+// not for SIGPIPE: nobody reads on - and removes the temporary files of its outputs. SIGHUP stays
+// ignored where it is (nohup). There is one guard at a time.
 class InterruptGuard {
  public:
   InterruptGuard();

@@ -1,4 +1,4 @@
-// By which formats are told apart.
+// Suffixes of file names, which choose the format.
 #pragma once
 #include <string>
 

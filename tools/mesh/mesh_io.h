@@ -1,4 +1,6 @@
-// Reading and writing of triangle meshes: STL, PLY, OBJ, OFF, VTP.
+// Reading and writing of triangle meshes: STL, PLY, OBJ, OFF, VTP. No library reads all of them,
+// tells what is wrong with a damaged file in one line, takes no memory that the file has not, and
+// writes the same bytes everywhere.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -14,6 +14,7 @@
 namespace plc::tools {
 namespace {
 
+// Ours, as none of the libraries that are linked decodes base64 as VTK writes it, in pieces.
 int base64_digit(char c) {
   if (c >= 'A' && c <= 'Z') return c - 'A';
   if (c >= 'a' && c <= 'z') return c - 'a' + 26;

@@ -15,7 +15,8 @@
 namespace plc::tools {
 namespace {
 
-// Of the file, or of all files of the folder. Where that cannot be told the reader says so.
+// The bytes of the file, or of all files in the folder; 0 where it cannot be asked for: the reader
+// will say why.
 uint64_t bytes_on_disk(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_directory(path, error)) {

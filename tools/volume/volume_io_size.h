@@ -23,7 +23,8 @@ uint64_t voxel_bytes(const ItkHeader& header);
 uint64_t size_of(const std::string& path);  // of a regular file
 void require_bytes(const std::string& path, uint64_t found, uint64_t needed);
 void require_ratio(const std::string& path, uint64_t packed, uint64_t needed, uint64_t ratio);
-// Unpacks the rest of the file, `packed` bytes at most, without keeping it.
+// Unpacks the rest of the file, `packed` bytes at most, without keeping it: the reader unpacks it
+// once more, but does not say where a stream ends early.
 void check_zlib(const std::string& path, std::ifstream& file, uint64_t packed, uint64_t needed);
 
 // The path of a file of that name in the folder of `path`.
