@@ -10,7 +10,7 @@ data=$(mktemp -d)
 trap 'rm -rf "$data"' EXIT
 
 programs=(pellicle flying_edges windowed_sinc make_mesh level_set)
-titles=(Pellicle FlyingEdges 'windowed sinc' 'make\_mesh\_3' 'level set')
+titles=(Pellicle FlyingEdges 'windowed sinc' 'make\_mesh\_3' 'ITK level set')
 
 # rows PROGRAM PATTERN PLACE VALUE: lines of a number in the scene (PLACE names it) and a value.
 rows() {
@@ -54,7 +54,7 @@ set logscale y
 set yrange [0.005:10]; set xrange [-0.02:0.22]
 $(curves noise)
 unset logscale y
-set key top right
+unset key
 set title 'plate, blur 0.5: farther than 1/2 voxel, %'
 set xlabel 'thickness, voxels'
 set yrange [0:105]; set xrange [0:4.5]

@@ -60,6 +60,10 @@ Facets facets_of(const Complex& complex, const peer::Volume& volume) {
 
 int main(int argc, char** argv) {
   return peer::run_peer(argc, argv, [](const peer::Volume& volume, const peer::Task& task) {
+    const auto above = [&](float value) { return static_cast<double>(value) > task.iso; };
+    if (std::none_of(volume.values.begin(), volume.values.end(), above)) {
+      throw plc::tools::Failure{"no voxel is above the value"};  // it would search without end
+    }
     const CGAL::Image_3 image = image_of(peer::padded(volume, kPad, task.low));
     Complex complex;
     const double seconds = peer::timed([&] {

@@ -84,7 +84,7 @@ FineField::FineField(const Scene& scene, const plc::Executor& executor)
   values_ = inside_parts(scene, fine_, executor);
   size_t inner = 1;
   for (size_t a = 0; a < 3; ++a) {
-    const auto cells = static_cast<size_t>(dims_[a] * fine_[a]);
+    const auto cells = static_cast<size_t>(dims_[a]) * static_cast<size_t>(fine_[a]);
     nodes_[a] = cells + 1;
     values_ = blurred(values_, cells, inner, weights(fine_[a], scene.sigma), executor);
     inner *= nodes_[a];
@@ -130,7 +130,8 @@ Double3 FineField::gradient(const Double3& p) const {
 std::vector<float> FineField::voxels() const {
   std::vector<float> image;
   const auto node_of = [&](int i, size_t a) {
-    return static_cast<size_t>(fine_[a] * i + fine_[a] / 2);
+    const auto fine = static_cast<size_t>(fine_[a]);
+    return fine * static_cast<size_t>(i) + fine / 2;
   };
   for (int z = 0; z < dims_[2]; ++z) {
     for (int y = 0; y < dims_[1]; ++y) {

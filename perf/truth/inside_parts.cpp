@@ -87,18 +87,18 @@ double part_below_plane(const Double3& half, double distance, const Double3& nor
 
 std::vector<float> inside_parts(const Scene& scene, const std::array<int, 3>& fine,
                                 const plc::Executor& executor) {
+  const auto size = [](int n) { return static_cast<size_t>(n); };
   std::array<size_t, 3> cells{};
-  for (size_t a = 0; a < 3; ++a) cells[a] = static_cast<size_t>(scene.dims[a] * fine[a]);
+  for (size_t a = 0; a < 3; ++a) cells[a] = size(scene.dims[a]) * size(fine[a]);
   std::vector<float> parts(cells[0] * cells[1] * cells[2]);
   const Voxel voxel(scene, fine);
   const size_t plane = cells[0] * cells[1];
-  executor.run(static_cast<size_t>(scene.dims[2]), [&](size_t slice) {
+  executor.run(size(scene.dims[2]), [&](size_t slice) {
     const int z = static_cast<int>(slice);
     for (int y = 0; y < scene.dims[1]; ++y) {
       for (int x = 0; x < scene.dims[0]; ++x) {
-        float* first = parts.data() + static_cast<size_t>(z * fine[2]) * plane +
-                       static_cast<size_t>(y * fine[1]) * cells[0] +
-                       static_cast<size_t>(x * fine[0]);
+        float* first = parts.data() + size(z) * size(fine[2]) * plane +
+                       size(y) * size(fine[1]) * cells[0] + size(x) * size(fine[0]);
         voxel.fill({x, y, z}, first, cells[0], plane);
       }
     }

@@ -43,8 +43,10 @@ struct Words {
 double within(const std::string& name, const std::string& text, double most) {
   const double value = to_numbers(name, text, 1, 1)[0];
   if (!(value >= 0 && value <= most)) {
-    throw Failure{name + " " + text + ": 0 to " + std::to_string(static_cast<int>(most)) +
-                  " is expected"};
+    const std::string limit = std::to_string(static_cast<int>(most));
+    std::string message = name;
+    message.append(" ").append(text).append(": 0 to ").append(limit).append(" is expected");
+    throw Failure{message};
   }
   return value;
 }
@@ -59,8 +61,9 @@ bool take_option(const std::string& name, const std::string& value, Words& words
     scene.seed = static_cast<uint64_t>(within(name, value, 1'000'000));
   } else if (name == "--voxels") {
     words.voxels = to_numbers(name, value, 3, 3);
-    for (const double side : words.voxels) {
-      if (!(side >= 1 && side <= 8)) throw Failure{name + " " + value + ": 1 to 8 is expected"};
+    const auto fits = [](double side) { return side >= 1 && side <= 8; };
+    if (!std::all_of(words.voxels.begin(), words.voxels.end(), fits)) {
+      throw Failure{name + " " + value + ": 1 to 8 is expected"};
     }
   } else if (name == "--turn") {
     words.turn = to_numbers(name, value, 3, 3);

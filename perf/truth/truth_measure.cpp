@@ -1,5 +1,5 @@
 // How far meshes in LPS are from what is true of a scene, as JSON:
-//   truth_measure SCENE MESH...
+//   truth_measure SCENE [MESH...]
 // Distances in voxels (mm: the geometric mean of the spacing is 1), see deviations.h; null where
 // there is none. Of a mesh without faces that is all that is told.
 #include <cmath>
@@ -100,8 +100,8 @@ void measure(std::vector<std::string> words) {
   for (const std::string& word : words) {
     if (word.rfind('-', 0) == 0) throw Failure{word + ": not known"};
   }
-  if (words.empty()) throw Failure{"a mesh is expected"};
   std::vector<Surface> meshes;
+  meshes.reserve(words.size());
   for (const std::string& path : words) meshes.push_back(surface_of(scene, path));
   const plc::Schedule schedule(truth::threads());
   const truth::Truth truth(scene, schedule);
@@ -123,5 +123,5 @@ void measure(std::vector<std::string> words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return truth::run_program(argc, argv, "truth_measure", "truth_measure SCENE MESH...", measure);
+  return truth::run_program(argc, argv, "truth_measure", "truth_measure SCENE [MESH...]", measure);
 }
