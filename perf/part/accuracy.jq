@@ -59,8 +59,8 @@ def losses: [.cases[] | . as $case | .results.pellicle | select(. != null) | sco
 def report: losses as $losses | ([.cases[] | select(.results.pellicle)] | length) as $cases |
   "# Accuracy", "",
   "Of `perf/accuracy` on \(.date), commit \(.commit), on \(.machine)" +
-    (if .options == "" then "" else ", with `\(.options)`" end) + ". All programs with their default",
-  "parameters; [perf/README.md](../README.md#accuracy) tells what is measured. Distances in voxels.", "",
+    (if .options == "" then "" else ", with `\(.options)`" end) + ". Every program with the",
+  "same parameters for all scenes; [perf/README.md](../README.md#accuracy) tells which, and what is measured. Distances in voxels.", "",
   "## Summary", "",
   "RMS of the distance, the larger of both ways, against the iso-surface of the image without noise",
   "(against the object where the blur has left none). The best is bold.", "", summary, "",
