@@ -4,12 +4,10 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "tools/file/failure.h"
 #include "tools/volume/volume_io.h"
 
 namespace peer {
@@ -86,23 +84,6 @@ inline double timed(const std::function<void()>& body) {
   const auto start = std::chrono::steady_clock::now();
   body();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-// A program's main(): peer_NAME VOLUME [MORE]. `run` prints a JSON object.
-inline int run_peer(int argc, char** argv, const std::function<void(const Volume&)>& run) {
-  if (argc < 2) {
-    std::fprintf(stderr, "%s: a volume is needed\n", argv[0]);
-    return 2;
-  }
-  try {
-    run(read(argv[1]));
-    return 0;
-  } catch (const plc::tools::Failure& failure) {
-    std::fprintf(stderr, "%s: %s\n", argv[0], failure.message.c_str());
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s: %s\n", argv[0], e.what());
-  }
-  return 1;
 }
 
 }  // namespace peer

@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "perf/peers/peer_iso_surface.h"
+#include "perf/truth/even_samples.h"
 
 namespace {
 
@@ -90,47 +91,16 @@ vtkSmartPointer<vtkPolyData> surface_of(const Options& options, const peer::Volu
   return surface;
 }
 
-// kSamples places, each for as much of the area as any other: one in the middle of each equal part
-// of the faces laid end to end, and within its face by the sequence R2 of Roberts.
 std::vector<std::array<double, 3>> samples_of(vtkPolyData* surface) {
-  std::vector<double> ends;  // area of the faces up to and with this one
-  double area = 0;
-  const auto corners = [&](vtkIdType face) {
+  const auto corners = [&](size_t face) {
     vtkIdType count = 0;
     const vtkIdType* ids = nullptr;
-    surface->GetCellPoints(face, count, ids);
-    std::array<std::array<double, 3>, 3> p{};
+    surface->GetCellPoints(static_cast<vtkIdType>(face), count, ids);
+    truth::Corners p{};
     for (size_t k = 0; k < 3; ++k) surface->GetPoint(ids[k], p[k].data());
     return p;
   };
-  for (vtkIdType f = 0; f < surface->GetNumberOfCells(); ++f) {
-    const auto p = corners(f);
-    double cross = 0;
-    for (size_t a = 0; a < 3; ++a) {
-      const size_t b = (a + 1) % 3, c = (a + 2) % 3;
-      const double x =
-          (p[1][b] - p[0][b]) * (p[2][c] - p[0][c]) - (p[1][c] - p[0][c]) * (p[2][b] - p[0][b]);
-      cross += x * x;
-    }
-    area += std::sqrt(cross) / 2;
-    ends.push_back(area);
-  }
-  if (!(area > 0)) throw Failure{"a surface has no area"};
-  constexpr double kPlastic = 1.32471795724474602596;
-  std::vector<std::array<double, 3>> samples(kSamples);
-  vtkIdType face = 0;
-  for (size_t i = 0; i < kSamples; ++i) {
-    const auto n = static_cast<double>(i) + 0.5;
-    const double at = n / kSamples * area;
-    while (face + 1 < surface->GetNumberOfCells() && ends[static_cast<size_t>(face)] < at) ++face;
-    double u = std::fmod(n / kPlastic, 1.0), v = std::fmod(n / (kPlastic * kPlastic), 1.0);
-    if (u + v > 1) u = 1 - u, v = 1 - v;
-    const auto p = corners(face);
-    for (size_t a = 0; a < 3; ++a) {
-      samples[i][a] = p[0][a] + u * (p[1][a] - p[0][a]) + v * (p[2][a] - p[0][a]);
-    }
-  }
-  return samples;
+  return truth::even_samples(static_cast<size_t>(surface->GetNumberOfCells()), corners, kSamples);
 }
 
 struct Distances {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "perf/peers/peer_vtk.h"
+#include "tools/file/failure.h"
 #include "tools/mesh/mesh_io.h"
 
 namespace peer {

@@ -1,7 +1,7 @@
 // The threshold level set of ITK, from a box around the image, on the full image or through a
 // pyramid:
 //   peer_level_set VOLUME [LEVELS]    levels above the full image, 3 by default
-// Values are those of `pellicle extract` for bone of the head CT: its window, 226 HU. A level ends
+// A level ends
 // when the mean change of the level set falls under 0.005, or after 2000 iterations.
 #include "perf/peers/peer_itk.h"
 // Behind what peer_itk.h defines.
@@ -9,11 +9,14 @@
 
 #include <cstdlib>
 
+#include "perf/peers/peer_task.h"
+#include "perf/peers/peer_vtk.h"
+
 namespace {
 
 using peer::Image;
 
-constexpr float kLow = -105.5F, kHigh = 1418.9F, kIso = 226;
+constexpr int kPad = 6;  // voxels
 constexpr int kIterations = 2000;
 constexpr double kChange = 0.005;
 
@@ -53,11 +56,11 @@ struct Result {
   unsigned long iterations = 0;
 };
 
-Result evolve(const Image* image, const Image* start) {
+// threshold: in the window, [0, 1].
+Result evolve(const Image* image, const Image* start, float threshold) {
   const auto filter = itk::ThresholdSegmentationLevelSetImageFilter<Image, Image>::New();
   filter->SetInput(start);
   filter->SetFeatureImage(image);
-  const float threshold = (kIso - kLow) / (kHigh - kLow);
   filter->SetLowerThreshold(threshold);
   filter->SetUpperThreshold(2);  // beyond the window: no object is too bright
   filter->SetPropagationScaling(1);
@@ -78,21 +81,35 @@ double volume_of(const Image* phi) {
   return static_cast<double>(inside) * s[0] * s[1] * s[2];
 }
 
+// Where the level set is 0.
+void write(const peer::Task& task, const peer::Volume& volume, const Image* phi) {
+  if (task.mesh.empty()) return;
+  peer::Volume inside = peer::padded(volume, kPad, 0);
+  const float* value = phi->GetBufferPointer();
+  for (float& v : inside.values) v = -*value++;
+  std::vector<double> xyz;
+  std::vector<uint32_t> abc;
+  peer::arrays_of(peer::flying_edges(peer::vtk_image(inside), 0), xyz, abc);
+  for (size_t i = 0; i < xyz.size(); ++i) xyz[i] -= kPad * volume.spacing[i % 3];
+  peer::write_result(task, volume, std::move(xyz), std::move(abc));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int levels = argc > 2 ? std::atoi(argv[2]) : 3;
-  return peer::run_peer(argc, argv, [levels](const peer::Volume& volume) {
+  return peer::run_peer(argc, argv, [](const peer::Volume& volume, const peer::Task& task) {
+    const int levels = task.words.size() > 1 ? std::atoi(task.words[1].c_str()) : 3;
+    const float threshold = (static_cast<float>(task.iso) - task.low) / (task.high - task.low);
     Result result;
     std::string iterations;
-    const peer::Volume closed = peer::padded(volume, 6, kLow);
+    const peer::Volume closed = peer::padded(volume, kPad, task.low);
     const double seconds = peer::timed([&] {
-      const auto pyramid = peer::pyramid_of(peer::image_of(closed, kLow, kHigh), levels);
+      const auto pyramid = peer::pyramid_of(peer::image_of(closed, task.low, task.high), levels);
       for (size_t h = pyramid.size(); h-- > 0;) {
         const Image* image = pyramid[h];
         const Image::Pointer start =
             h + 1 == pyramid.size() ? box_around(image) : refined(result.phi, image);
-        result = evolve(image, start);
+        result = evolve(image, start, threshold);
         iterations += (iterations.empty() ? "" : ", ") + std::to_string(result.iterations);
       }
     });
@@ -104,5 +121,6 @@ int main(int argc, char** argv) {
         "{\"title\": \"ITK threshold level set, %s%s\", \"seconds\": %.3f, "
         "\"iterations\": [%s], \"volume\": %.0f}\n",
         how.c_str(), stopped.c_str(), seconds, iterations.c_str(), volume_of(result.phi));
+    write(task, volume, result.phi);
   });
 }

@@ -1,13 +1,13 @@
 // The pyramid by ITK: a recursive Gaussian and linear resampling to a size 1 / sqrt 3, three times.
 #include "perf/peers/peer_itk.h"
+// Behind what peer_itk.h defines.
+#include "perf/peers/peer_task.h"
 
 int main(int argc, char** argv) {
-  return peer::run_peer(argc, argv, [](const peer::Volume& volume) {
+  return peer::run_peer(argc, argv, [](const peer::Volume& volume, const peer::Task& task) {
     std::vector<peer::Image::Pointer> pyramid;
-    const double seconds = peer::timed([&] {
-      // The window that `pellicle extract` derives for bone of the head CT.
-      pyramid = peer::pyramid_of(peer::image_of(volume, -105.5F, 1418.9F), 3);
-    });
+    const double seconds = peer::timed(
+        [&] { pyramid = peer::pyramid_of(peer::image_of(volume, task.low, task.high), 3); });
     const auto size = pyramid.back()->GetLargestPossibleRegion().GetSize();
     std::printf(
         "{\"title\": \"ITK recursive Gaussian and resampling, 3 levels\", \"pyramid\": true, "

@@ -10,6 +10,7 @@
 #include <vtkCellArray.h>
 #include <vtkIdList.h>
 
+#include "perf/peers/peer_task.h"
 #include "perf/peers/peer_vtk.h"
 
 namespace {
@@ -50,11 +51,11 @@ size_t self_intersections(const Mesh& mesh) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return peer::run_peer(argc, argv, [](const peer::Volume& volume) {
-    const auto image = peer::vtk_image(peer::padded(volume, 6, -105.5F));
+  return peer::run_peer(argc, argv, [](const peer::Volume& volume, const peer::Task& task) {
+    const auto image = peer::vtk_image(peer::padded(volume, 6, task.low));
     Mesh mesh;
     const double seconds = peer::timed([&] {
-      mesh = mesh_of(peer::flying_edges(image, 226));
+      mesh = mesh_of(peer::flying_edges(image, task.iso));
       pmp::isotropic_remeshing(faces(mesh), kEdge, mesh, pmp::parameters::number_of_iterations(3));
     });
     mesh.collect_garbage();

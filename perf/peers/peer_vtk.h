@@ -33,4 +33,18 @@ inline vtkSmartPointer<vtkPolyData> flying_edges(vtkImageData* image, double iso
   return filter->GetOutput();
 }
 
+// Of a surface of triangles: its corners, three coordinates each, and its faces.
+inline void arrays_of(vtkPolyData* surface, std::vector<double>& xyz, std::vector<uint32_t>& abc) {
+  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i) {
+    const double* p = surface->GetPoint(i);
+    xyz.insert(xyz.end(), p, p + 3);
+  }
+  for (vtkIdType f = 0; f < surface->GetNumberOfCells(); ++f) {
+    vtkIdType count = 0;
+    const vtkIdType* ids = nullptr;
+    surface->GetCellPoints(f, count, ids);
+    for (size_t k = 0; k < 3; ++k) abc.push_back(static_cast<uint32_t>(ids[k]));
+  }
+}
+
 }  // namespace peer

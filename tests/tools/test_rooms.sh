@@ -33,6 +33,9 @@ passes engine/api/made.h engine/pellicle.h
 passes tools/mesh/made.h engine/pellicle.h
 passes tools/command/made.h tools/file/failure.h
 passes tests/mesh/made.h engine/api/handles.h
+passes tests/perf/made.h perf/truth/scene.h
+refuses tests/perf/made.h perf/peers/peer.h 'includes perf/peers/peer.h: nobody includes perf/'
+refuses engine/mesh/made.h perf/truth/scene.h 'includes perf/truth/scene.h: nobody includes perf/'
 refuses engine/mesh/made.h engine/guard/trials.h 'includes engine/guard/trials.h: engine/guard/ is above'
 refuses pyramid/made.h engine/base/vec3.h 'includes engine/base/vec3.h: engine/base/ is above'
 refuses kernels/made.cpp pyramid/buffer.h 'includes pyramid/buffer.h: pyramid/ is above'
