@@ -243,6 +243,12 @@ typedef enum plc_anisotropy PLC_INT {
                                   may keep a level from rest */
 } plc_anisotropy;
 
+typedef enum plc_mesh_kind PLC_INT {
+  PLC_MESH_UNIFORM = 0, /* edges of one length everywhere, the voxels': the paper's (3.2) */
+  PLC_MESH_ADAPTIVE = 1 /* edges by how much the image's iso-surface bends; sheets come as near to
+                           each other as the image has them. Needs iso, and no springs */
+} plc_mesh_kind;
+
 #define PLC_MAX_LEVELS 32
 
 typedef struct plc_parameters {
@@ -264,6 +270,13 @@ typedef struct plc_parameters {
   /* the start */
   plc_init init;
   int bubbles[3]; /* each 1 .. 256 */
+  /* the mesh; lengths in mm where voxels have their shortest side, on I_0 (on a coarser level as
+     much longer as its voxels are). 0: derived from the voxels; the result's parameters tell */
+  plc_mesh_kind mesh;
+  double tolerance; /* of an adaptive mesh: the mean distance of its facets from a surface that
+                       bends as the image's does, > 0; 0: 1/24 of a voxel */
+  double edge_min, edge_max; /* of an adaptive mesh: mean edges lie between, an eighth of those of a
+                                uniform mesh and 7.9 times those at most; 0: 0.625 and 5 voxels */
   /* the model */
   double curvature; /* alpha_c (5), >= 0 */
   double spring;    /* alpha_e (6), >= 0 */

@@ -20,14 +20,35 @@ using scalar::guided_move;
 using scalar::guided_stage;
 #else
 
+// Of a mesh of another size than delta.
+HWY_INLINE Floats stiffness(Floats above) {
+  const FloatTag d;
+  const Floats one = hn::Set(d, 1.0F);
+  const Floats size = hn::IfThenElse(hn::Gt(above, hn::Zero(d)), hn::Add(one, above), one);
+  const Floats squared = hn::Mul(size, size);
+  return hn::Div(one, hn::Mul(squared, squared));
+}
+
+// Where the image is sampled for the vertices i .. i + kLanes - 1.
+template <bool kSized>
+HWY_INLINE Floats3 sampled_place(const SurfaceForces& f, uint32_t i) {
+  const Floats3 p = load_packed(f.position + i);
+  if constexpr (!kSized) return p;
+  const Floats3 n = load3(f.normal, i);
+  return p + n * hn::Mul(hn::Set(FloatTag(), f.facets), dot(load_packed(f.laplacian + i), n));
+}
+
 // (5) and (7) of the vertices i .. i + kLanes - 1.
-HWY_INLINE Floats3 surface_force(const SurfaceForces& f, Floats value, uint32_t i) {
+template <bool kSized>
+HWY_INLINE Floats3 surface_force(const SurfaceForces& f, const Rk4Streams& s, Floats value,
+                                 uint32_t i) {
   const FloatTag d;
   const Floats valence = load_valence(f.ring, i);
   const Floats3 around = record_sum(f.ring, f.laplacian, i, valence) * inverse_valence(valence);
   const FloatMask alive = hn::Gt(valence, hn::Zero(d));
-  const Floats3 bent =
-      where(alive, (load_packed(f.laplacian + i) - around) * hn::Set(d, f.curvature));
+  Floats alpha = hn::Set(d, f.curvature);
+  if constexpr (kSized) alpha = hn::Mul(alpha, stiffness(load_packed4(s.position + i).w));
+  const Floats3 bent = where(alive, (load_packed(f.laplacian + i) - around) * alpha);
   const Floats push = hn::Mul(hn::Set(d, f.attraction), hn::Sub(hn::Set(d, f.iso), value));
   return bent + load3(f.normal, i) * push;
 }
@@ -81,7 +102,7 @@ HWY_INLINE void prefetch_block(const SurfaceForces& f, const Rk4Streams& s, uint
 
 // visit(first vertex of the block, samples of the image at its vertices) for every block. Sampling
 // waits for memory; in a loop of its own over a few blocks more of it is under way at once.
-template <int kStage, class Visit>
+template <int kStage, bool kSized, class Visit>
 HWY_INLINE void visit_blocks(const SurfaceForces& f, const Rk4Streams& s, const Blocks& blocks,
                              const Visit& visit) {
   constexpr size_t kChunk = 64;        // less than kAhead: their positions have come
@@ -97,7 +118,7 @@ HWY_INLINE void visit_blocks(const SurfaceForces& f, const Rk4Streams& s, const 
         }
         const uint32_t begin = blocks.begin(b);
         for (uint32_t i = 0; i < kRingLanes; i += kLanes) {
-          hn::Store(sample<Voxel>(f.image, load_packed(f.position + begin + i)), FloatTag(),
+          hn::Store(sample<Voxel>(f.image, sampled_place<kSized>(f, begin + i)), FloatTag(),
                     values + (b - first) * kRingLanes + i);
         }
       }
@@ -109,39 +130,53 @@ HWY_INLINE void visit_blocks(const SurfaceForces& f, const Rk4Streams& s, const 
   }
 }
 
-template <int kStage>
+template <int kStage, bool kSized>
 HWY_INLINE void stage_blocks(const Rk4Coefficients& coefficients, const SurfaceForces& forces,
                              const Rk4Streams& streams, const Blocks& blocks) {
   const Rk4Lanes<kStage> lanes(coefficients);
-  visit_blocks<kStage>(forces, streams, blocks, [&](uint32_t begin, const float* values) HWY_ATTR {
-    for (uint32_t i = begin; i < begin + kRingLanes; i += kLanes) {
-      const Floats value = hn::Load(FloatTag(), values + (i - begin));
-      run_stage(lanes, streams, surface_force(forces, value, i), i);
-    }
-  });
+  visit_blocks<kStage, kSized>(
+      forces, streams, blocks, [&](uint32_t begin, const float* values) HWY_ATTR {
+        for (uint32_t i = begin; i < begin + kRingLanes; i += kLanes) {
+          const Floats value = hn::Load(FloatTag(), values + (i - begin));
+          run_stage(lanes, streams, surface_force<kSized>(forces, streams, value, i), i);
+        }
+      });
 }
 
 void guided_stage(int stage, const Rk4Coefficients& coefficients, const SurfaceForces& forces,
                   const Rk4Streams& streams, const Blocks& blocks) {
   with_stage(stage, [&](auto k) HWY_ATTR {
-    stage_blocks<decltype(k)::value>(coefficients, forces, streams, blocks);
+    if (forces.sized) {
+      stage_blocks<decltype(k)::value, true>(coefficients, forces, streams, blocks);
+    } else {
+      stage_blocks<decltype(k)::value, false>(coefficients, forces, streams, blocks);
+    }
   });
+}
+
+template <bool kSized>
+HWY_INLINE Movement move_blocks(const Rk4Coefficients& coefficients, const SurfaceForces& forces,
+                                const Rk4Streams& streams, const MoveBound& bound,
+                                const MoveStreams& ends, const Blocks& blocks) {
+  const Rk4Lanes<3> lanes(coefficients);
+  MoveLanes move(bound);
+  visit_blocks<3, kSized>(
+      forces, streams, blocks, [&](uint32_t begin, const float* values) HWY_ATTR {
+        for (uint32_t part = 0; part < kRingLanes / kLanes; ++part) {
+          const uint32_t i = begin + part * kLanes;
+          const Floats value = hn::Load(FloatTag(), values + (i - begin));
+          move.move(arrive(lanes, streams, surface_force<kSized>(forces, streams, value, i), i),
+                    streams.moved, ends, begin, part);
+        }
+      });
+  return move.total();
 }
 
 Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& forces,
                      const Rk4Streams& streams, const MoveBound& bound, const MoveStreams& ends,
                      const Blocks& blocks) {
-  const Rk4Lanes<3> lanes(coefficients);
-  MoveLanes move(bound);
-  visit_blocks<3>(forces, streams, blocks, [&](uint32_t begin, const float* values) HWY_ATTR {
-    for (uint32_t part = 0; part < kRingLanes / kLanes; ++part) {
-      const uint32_t i = begin + part * kLanes;
-      move.move(arrive(lanes, streams,
-                       surface_force(forces, hn::Load(FloatTag(), values + (i - begin)), i), i),
-                streams.moved, ends, begin, part);
-    }
-  });
-  return move.total();
+  return forces.sized ? move_blocks<true>(coefficients, forces, streams, bound, ends, blocks)
+                      : move_blocks<false>(coefficients, forces, streams, bound, ends, blocks);
 }
 
 #endif  // PLC_SCALAR_TARGET

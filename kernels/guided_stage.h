@@ -21,6 +21,10 @@ struct SurfaceForces {
   ConstFloat3s normal;     // the step along the normal
   float attraction;        // delta alpha_I
   float iso;
+  // An adaptive mesh: alpha_c is divided by the fourth power of sizes above delta, which keeps the
+  // length that (5) smooths over, and the image is sampled at x + facets (L . n) n.
+  bool sized = false;
+  float facets = 0;
 };
 
 // Stages 0..2, and stage 3 where something else comes before the move.

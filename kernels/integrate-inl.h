@@ -117,14 +117,17 @@ class MoveLanes {
     const uint32_t i = begin + part * kLanes;
     const Floats3& v = arrival.velocity;
     const IntLanes turns = count_of(s.turns + i);
-    const Floats slowed = slowness(turns);
+    const Floats4 before = load_packed4(s.position + i);
+    // Where the mesh is finer than delta, movements are.
+    const Floats one = hn::Set(d, 1.0F);
+    const Floats slowed = hn::Mul(slowness(turns), hn::Min(hn::Add(one, before.w), one));
     const Floats3 by =
         shortened(arrival.moved, dot(arrival.moved, arrival.moved), hn::Mul(length_, slowed));
     const Floats squared = dot(by, by);
     store3(by, moved, i);
     const Floats fastest = hn::IfThenElseZero(swings(turns), hn::Mul(speed_, slowed));
     store3(shortened(v, dot(v, v), fastest), s.velocity, i);
-    store_packed(load_packed(s.position + i) + by, s.moved_to + i);
+    store_packed(Floats3{before.x, before.y, before.z} + by, before.w, s.moved_to + i);
     hn::StoreU(hn::Add(hn::LoadU(d, s.path + i), hn::Sqrt(squared)), d, s.path + i);
     longest_ = hn::IfThenElse(hn::Gt(squared, longest_), squared, longest_);
     const Floats along = dot(by, load3(s.normal, i));

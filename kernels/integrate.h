@@ -77,7 +77,8 @@ struct Movement {
 };
 
 // From the displacement d and the new velocity after stage 3: both are shortened to the bound (up
-// to rounding; what is within it keeps its bits), moved_to = p + d, path += |d|. `moved` becomes
+// to rounding; what is within it keeps its bits), which is that part of it that 1 + w of the
+// position is where that is below 1; moved_to = p + d with the same w, path += |d|. `moved` becomes
 // the bounded displacement. Vertices of valence 0 have d = 0 by the kernels before.
 Movement move(SimdTarget simd, const MoveBound& bound, const Float3s& moved,
               const ConstFloat3s& new_velocity, const MoveStreams& streams, const Blocks& blocks);

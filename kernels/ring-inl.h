@@ -46,20 +46,35 @@ HWY_INLINE bool longer_than(Floats valence, uint32_t slots) {
   return !hn::AllFalse(d, hn::Gt(valence, hn::Set(d, static_cast<float>(slots))));
 }
 
-// Calls sum.add(mask of the lanes that have slot k, record of slot k) for k = 0 .. until no lane
-// has more, or the columns end.
-template <class Sum>
-HWY_INLINE void walk_ring(const RingView& ring, const Float4* record, uint32_t v, Floats valence,
-                          Sum& sum) {
+// Calls sum.add(mask of the lanes that have slot k, load(indices of slot k)) for k = 0 .. until no
+// lane has more, or the columns end.
+template <class Load, class Sum>
+HWY_INLINE void walk_slots(const RingView& ring, uint32_t v, Floats valence, const Load& load,
+                           Sum& sum) {
   const FloatTag d;
   const uint32_t* column = columns_of(ring, v);
   Floats slot = hn::Zero(d);
   for (uint32_t k = 0; k < kRingSlots; ++k, column += kRingLanes) {
     const FloatMask has_slot = hn::Lt(slot, valence);
     if (hn::AllFalse(d, has_slot)) return;
-    sum.add(has_slot, load_indexed(record, column));
+    sum.add(has_slot, load(column));
     slot = hn::Add(slot, hn::Set(d, 1.0F));
   }
+}
+// ... of the records' x, y, z; of their w, too.
+template <class Sum>
+HWY_INLINE void walk_ring(const RingView& ring, const Float4* record, uint32_t v, Floats valence,
+                          Sum& sum) {
+  walk_slots(
+      ring, v, valence,
+      [record](const uint32_t* index) HWY_ATTR { return load_indexed(record, index); }, sum);
+}
+template <class Sum>
+HWY_INLINE void walk_ring4(const RingView& ring, const Float4* record, uint32_t v, Floats valence,
+                           Sum& sum) {
+  walk_slots(
+      ring, v, valence,
+      [record](const uint32_t* index) HWY_ATTR { return load_indexed4(record, index); }, sum);
 }
 
 HWY_INLINE bool has_tails(Floats valence) {

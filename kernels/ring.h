@@ -39,7 +39,9 @@ struct Metric {
   float x = 1, y = 1, z = 1;
 };
 
-// A record that is fetched by neighbour index: one aligned 16-byte load. w is 0.
+// A record that is fetched by neighbour index: one aligned 16-byte load. w is 0, but for positions
+// at the start of a step: there it is by how much the size that edges are to have is above delta,
+// in delta; 0 in a uniform mesh.
 struct alignas(16) Float4 {
   float x, y, z, w;
 };

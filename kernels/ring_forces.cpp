@@ -193,14 +193,19 @@ void metric_normals(const Metric& metric, const float* nx, const float* ny, cons
 
 struct EdgeLimits {
   Floats3 centre;
+  Floats above;
   Floats min_squared, max_squared;
   FloatMask too_short = hn::MaskFromVec(hn::Zero(FloatTag()));
   FloatMask too_long = too_short;
-  HWY_INLINE void add(FloatMask has_slot, const Floats3& neighbour) {
-    const Floats3 edge = neighbour - centre;
+  HWY_INLINE void add(FloatMask has_slot, const Floats4& neighbour) {
+    const FloatTag d;
+    const Floats3 edge = Floats3{neighbour.x, neighbour.y, neighbour.z} - centre;
     const Floats length = dot(edge, edge);
-    too_short = hn::Or(too_short, hn::And(has_slot, hn::Le(length, min_squared)));
-    too_long = hn::Or(too_long, hn::And(has_slot, hn::Ge(length, max_squared)));
+    const Floats size =
+        hn::Add(hn::Set(d, 1.0F), hn::Mul(hn::Set(d, 0.5F), hn::Add(above, neighbour.w)));
+    const Floats squared = hn::Mul(size, size);
+    too_short = hn::Or(too_short, hn::And(has_slot, hn::Le(length, hn::Mul(min_squared, squared))));
+    too_long = hn::Or(too_long, hn::And(has_slot, hn::Ge(length, hn::Mul(max_squared, squared))));
   }
 };
 
@@ -211,8 +216,9 @@ void edge_violations(const RingView& ring, const Float4* position, float min_squ
   const hn::Rebind<uint8_t, FloatTag> d8;
   for_lanes(ring, position, blocks, [&](uint32_t v) HWY_ATTR {
     const Floats valence = load_valence(ring, v);
-    EdgeLimits walk{load_packed(position + v), hn::Set(d, min_squared), hn::Set(d, max_squared)};
-    walk_ring(ring, position, v, valence, walk);
+    const Floats4 own = load_packed4(position + v);
+    EdgeLimits walk{{own.x, own.y, own.z}, own.w, hn::Set(d, min_squared), hn::Set(d, max_squared)};
+    walk_ring4(ring, position, v, valence, walk);
     const auto bits =
         hn::Or(hn::IfThenElseZero(hn::RebindMask(d32, walk.too_short), hn::Set(d32, 1)),
                hn::IfThenElseZero(hn::RebindMask(d32, walk.too_long), hn::Set(d32, 2)));

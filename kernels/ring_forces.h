@@ -46,7 +46,8 @@ void metric_normals(SimdTarget simd, const Metric& metric, const float* nx, cons
                     float* step_x, float* step_y, float* step_z);
 
 // flags[v]: bit 0 when some edge of v is not longer than sqrt(min_squared) (constraint (1)), bit 1
-// when some edge is not shorter than sqrt(max_squared) (constraint (2)).
+// when some edge is not shorter than sqrt(max_squared) (constraint (2)); both times the mean of the
+// sizes at its ends, 1 + w.
 void edge_violations(SimdTarget simd, const RingView& ring, const Float4* position,
                      float min_squared, float max_squared, const Blocks& blocks, uint8_t* flags);
 

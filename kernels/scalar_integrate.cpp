@@ -73,28 +73,48 @@ void advance_vertex(int stage, const Rk4Coefficients& c, const Rk4Streams& s, co
   s.stage[i] = next;
 }
 
+// Of a mesh of another size than delta.
+float stiffness(float above) {
+  const float size = above > 0.0F ? 1.0F + above : 1.0F;
+  return 1.0F / (size * size * (size * size));
+}
+
 // (5) and (7).
-Triple surface_force(const SurfaceForces& f, float value, uint32_t i) {
+Triple surface_force(const SurfaceForces& f, float value, float above, uint32_t i) {
   Triple bent;
   if (f.ring.valence[i] != 0) {
     const Triple around =
         times(record_sum(f.ring, f.laplacian, i), 1.0F / static_cast<float>(f.ring.valence[i]));
     const Float4& own = f.laplacian[i];
-    bent = times({own.x - around.x, own.y - around.y, own.z - around.z}, f.curvature);
+    bent = times({own.x - around.x, own.y - around.y, own.z - around.z},
+                 f.sized ? f.curvature * stiffness(above) : f.curvature);
   }
   const Triple push = times(at(f.normal, i), f.attraction * (f.iso - value));
   return {bent.x + push.x, bent.y + push.y, bent.z + push.z};
 }
 
+// Where the image is sampled for a vertex.
+Float4 sampled_place(const SurfaceForces& f, uint32_t i) {
+  const Float4& p = f.position[i];
+  if (!f.sized) return p;
+  const Triple n = at(f.normal, i);
+  const Float4& l = f.laplacian[i];
+  const float off = f.facets * dot({l.x, l.y, l.z}, n);
+  return {p.x + n.x * off, p.y + n.y * off, p.z + n.z * off, 0.0F};
+}
+
 // visit(vertex, its force) for every vertex of the blocks.
 template <typename Visit>
-void for_forces(const SurfaceForces& f, const Blocks& blocks, const Visit& visit) {
+void for_forces(const SurfaceForces& f, const Rk4Streams& s, const Blocks& blocks,
+                const Visit& visit) {
   for (size_t b = 0; b < blocks.count; ++b) {
     const uint32_t begin = blocks.begin(b);
     float values[kRingLanes];
-    sample_trilinear(f.image, f.position + begin, 0, kRingLanes, values);
+    Float4 places[kRingLanes];
+    for (uint32_t l = 0; l < kRingLanes; ++l) places[l] = sampled_place(f, begin + l);
+    sample_trilinear(f.image, places, 0, kRingLanes, values);
     for (uint32_t l = 0; l < kRingLanes; ++l) {
-      visit(begin + l, surface_force(f, values[l], begin + l));
+      visit(begin + l, surface_force(f, values[l], s.position[begin + l].w, begin + l));
     }
   }
 }
@@ -124,13 +144,13 @@ float slowness(uint32_t turns, uint32_t free_turns) {
 void move_vertex(const MoveBound& bound, const Triple& displacement, const Triple& new_velocity,
                  const Float3s& moved, const MoveStreams& s, uint32_t i, Sums& sums) {
   const uint32_t turns = s.turns[i] & kTurnsMask;
-  const float slowed = slowness(turns, bound.free_turns);
+  const Float4& p = s.position[i];
+  const float slowed = slowness(turns, bound.free_turns) * (1.0F + p.w < 1.0F ? 1.0F + p.w : 1.0F);
   const Triple by = shortened(displacement, bound.length * slowed);
   set(moved, i, by);
   const float fastest = turns <= bound.swinging_turns ? bound.speed * slowed : 0;
   set(s.velocity, i, shortened(new_velocity, fastest));
-  const Float4& p = s.position[i];
-  s.moved_to[i] = {p.x + by.x, p.y + by.y, p.z + by.z, 0.0F};
+  s.moved_to[i] = {p.x + by.x, p.y + by.y, p.z + by.z, p.w};
   s.path[i] += std::sqrt(dot(by, by));
   sums.add(by, at(s.normal, i), i);
 }
@@ -163,7 +183,7 @@ Movement move(const MoveBound& bound, const Float3s& moved, const ConstFloat3s& 
 
 void guided_stage(int stage, const Rk4Coefficients& coefficients, const SurfaceForces& forces,
                   const Rk4Streams& streams, const Blocks& blocks) {
-  for_forces(forces, blocks, [&](uint32_t i, const Triple& force) {
+  for_forces(forces, streams, blocks, [&](uint32_t i, const Triple& force) {
     advance_vertex(stage, coefficients, streams, force, i);
   });
 }
@@ -172,7 +192,7 @@ Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& f
                      const Rk4Streams& streams, const MoveBound& bound, const MoveStreams& ends,
                      const Blocks& blocks) {
   Sums sums;
-  for_forces(forces, blocks, [&](uint32_t i, const Triple& force) {
+  for_forces(forces, streams, blocks, [&](uint32_t i, const Triple& force) {
     Rk4State end;
     rk4_vertex(3, coefficients, streams, force, i, end);
     move_vertex(bound, end.moved, end.rate, streams.moved, ends, i, sums);

@@ -102,9 +102,11 @@ uint8_t violation_flags(const RingView& ring, const Float4* position, float min_
                         float max_squared, uint32_t v) {
   uint8_t flags = 0;
   for (uint32_t k = 0; k < ring.valence[v]; ++k) {
-    const float length = squared(difference(position[ring.slot(v, k)], position[v]));
-    if (length <= min_squared) flags |= 1U;
-    if (length >= max_squared) flags |= 2U;
+    const Float4& end = position[ring.slot(v, k)];
+    const float length = squared(difference(end, position[v]));
+    const float size = 1.0F + 0.5F * (position[v].w + end.w);
+    if (length <= min_squared * (size * size)) flags |= 1U;
+    if (length >= max_squared * (size * size)) flags |= 2U;
   }
   return flags;
 }

@@ -83,9 +83,11 @@ HWY_INLINE void store3(const Floats3& a, float* x, float* y, float* z, uint32_t 
   hn::StoreU(a.y, d, y + i);
   hn::StoreU(a.z, d, z + i);
 }
+HWY_INLINE void store_packed(const Floats3& a, Floats w, Float4* to) {
+  hn::StoreInterleaved4(a.x, a.y, a.z, w, FloatTag(), &to->x);
+}
 HWY_INLINE void store_packed(const Floats3& a, Float4* to) {
-  const FloatTag d;
-  hn::StoreInterleaved4(a.x, a.y, a.z, hn::Zero(d), d, &to->x);
+  store_packed(a, hn::Zero(FloatTag()), to);
 }
 
 // 16-byte block b of the result is load(lane + 4 b).
@@ -147,6 +149,9 @@ struct IndexedRecords {
     return hn::Load(QuadTag(), &record[index[lane]].x);
   }
 };
+HWY_INLINE Floats4 load_indexed4(const Float4* record, const uint32_t* index) {
+  return load_transposed(IndexedRecords{record, index});
+}
 HWY_INLINE Floats3 load_indexed(const Float4* record, const uint32_t* index) {
   const Floats4 r = load_transposed(IndexedRecords{record, index});
   return {r.x, r.y, r.z};
@@ -157,6 +162,9 @@ struct SuccessiveRecords {
   const Float4* at;
   HWY_INLINE Quad operator()(uint32_t lane) const { return hn::Load(QuadTag(), &at[lane].x); }
 };
+HWY_INLINE Floats4 load_packed4(const Float4* at) {
+  return load_transposed(SuccessiveRecords{at});
+}
 HWY_INLINE Floats3 load_packed(const Float4* at) {
   const Floats4 r = load_transposed(SuccessiveRecords{at});
   return {r.x, r.y, r.z};

@@ -65,7 +65,9 @@ Status Run::prepare(std::shared_ptr<const PyramidData> pyramid, Pyramid images, 
     surface_->level_dims.push_back(images.levels[h].dims);
     surface_->level_units.push_back(images.levels[h].unit);
   }
-  RecoverySpec spec = recovery_spec(p);
+  const double unit = images.levels[0].unit;
+  if (Status s = derive_mesh(unit, p); !s.ok()) return s;
+  RecoverySpec spec = recovery_spec(p, unit);
   spec.isos = pyramid_->isos;
   take_extras(extras, surface_->frame, spec);
   extras_ = extras;
@@ -245,6 +247,7 @@ std::unique_ptr<plc_surface> Run::surface() const {
   auto copy = std::make_unique<plc_surface>();
   copy->host = host_;
   copy->mesh = surface_->mesh.copy();
+  copy->mesh.sizing = nullptr;  // the run's own
   if (!copy->mesh.in_order()) {
     copy->mesh.renumber(morton_order(copy->mesh, host_->schedule), host_->schedule);
   }

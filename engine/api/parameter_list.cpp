@@ -69,6 +69,8 @@ constexpr const char* kForces[] = {"iso", "gradient", "both"};
 constexpr const char* kBounds[] = {"clamp", "scale"};
 constexpr const char* kAnisotropies[] = {"physical", "voxel", "metric"};
 
+constexpr const char* kMeshes[] = {"uniform", "adaptive"};
+
 #define FIELD(name)                       \
   Field {                                 \
 #name, offsetof(plc_parameters, name) \
@@ -88,6 +90,10 @@ constexpr plc_parameter_info kList[] = {
     real(FIELD(reduction), kRefinement, kAboveOne, 2, "above 1 and at most 2"),
     choice(FIELD(init), PLC_INIT_BUBBLE, PLC_INIT_BUBBLE, "a plc_init", kInits),
     count({"bubbles", offsetof(plc_parameters, bubbles), 3}, 1, 1, 256, "1 .. 256 per axis"),
+    choice(FIELD(mesh), PLC_MESH_UNIFORM, PLC_MESH_UNIFORM, "a plc_mesh_kind", kMeshes),
+    real(FIELD(tolerance), 0, 0, kMost, "0 .. 1e6 mm"),
+    real(FIELD(edge_min), 0, 0, kMost, "0 .. 1e6 mm"),
+    real(FIELD(edge_max), 0, 0, kMost, "0 .. 1e6 mm"),
     coefficient(FIELD(curvature), 0.4),
     coefficient(FIELD(spring), 0),
     choice(FIELD(rest_length), PLC_REST_MEAN, PLC_REST_ZERO, "a plc_rest_length", kRestLengths),

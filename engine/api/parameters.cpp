@@ -59,6 +59,19 @@ Status check_surroundings(const plc_parameters& p) {
   return {};
 }
 
+// Of an adaptive mesh.
+constexpr double kLeastSize = 0.125, kMostSize = 7.9;  // in delta
+
+Status check_mesh(const plc_parameters& p) {
+  if (p.mesh != PLC_MESH_ADAPTIVE) return {};
+  const auto refused = [](const std::string& why) {
+    return Status{ErrorCode::kInvalidArgument, "mesh adaptive: " + why};
+  };
+  if (std::isnan(p.iso)) return refused("needs an iso-value, from which its sizes are derived");
+  if (p.spring > 0) return refused("has no springs, which draw edges to one length");
+  return {};
+}
+
 }  // namespace
 
 Status check_parameters(const plc_parameters& p) {
@@ -72,6 +85,7 @@ Status check_parameters(const plc_parameters& p) {
       return {ErrorCode::kInvalidArgument, "level iso-values: given, but iso is not set"};
     }
   }
+  if (Status s = check_mesh(p); !s.ok()) return s;
   if (p.level_iso_count > 0 && p.levels >= 0 && p.level_iso_count != p.levels + 1) {
     return {ErrorCode::kInvalidArgument, "level iso-values: " + std::to_string(p.level_iso_count) +
                                              " given, " + std::to_string(p.levels + 1) +
@@ -124,6 +138,20 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
   return {};
 }
 
+Status derive_mesh(double unit, plc_parameters& p) {
+  if (p.mesh != PLC_MESH_ADAPTIVE) return {};
+  const double delta = unit / kUnitPerDelta;
+  const SizeSpec sizes;
+  if (p.tolerance == 0) p.tolerance = sizes.tolerance * delta;
+  if (p.edge_min == 0) p.edge_min = sizes.finest * kMeanEdge * delta;
+  if (p.edge_max == 0) p.edge_max = std::max(p.edge_min, sizes.coarsest * kMeanEdge * delta);
+  const double least = kLeastSize * kMeanEdge * delta, most = kMostSize * kMeanEdge * delta;
+  if (p.edge_min >= least && p.edge_min <= p.edge_max && p.edge_max <= most) return {};
+  return {ErrorCode::kInvalidArgument, "edges of " + text(p.edge_min) + " .. " + text(p.edge_max) +
+                                           " mm: must be a range within " + text(least) + " .. " +
+                                           text(most) + " mm for voxels of " + text(unit) + " mm"};
+}
+
 double level_iso_bound(const plc_parameters& p, double background) {
   const double surroundings =
       p.inside_below == 0 ? std::max(background, p.pad_value) : std::min(background, p.pad_value);
@@ -141,8 +169,15 @@ PyramidSpec pyramid_spec(const plc_parameters& p) {
   return spec;
 }
 
-RecoverySpec recovery_spec(const plc_parameters& p) {
+RecoverySpec recovery_spec(const plc_parameters& p, double unit) {
   RecoverySpec spec;
+  if (p.mesh == PLC_MESH_ADAPTIVE) {
+    const double delta = unit / kUnitPerDelta;
+    spec.sizes.emplace();
+    spec.sizes->finest = p.edge_min / (kMeanEdge * delta);
+    spec.sizes->coarsest = p.edge_max / (kMeanEdge * delta);
+    spec.sizes->tolerance = p.tolerance / delta;
+  }
   spec.inside_above = p.inside_below == 0;
   Model& m = spec.model;
   m.curvature = static_cast<float>(p.curvature);

@@ -25,6 +25,22 @@ inline constexpr double kCubesPerVoxel = 8;
 // neighbouring voxels apart, and cells of the hash would be beyond their numbers.
 inline constexpr float kReach = 16777216;
 
+// ---- adaptive meshes (pyramid/size_field.h) ---------------------------------------------------
+
+// Edges are longer than (2) has them by no more than this, where a vertex has gone to a place of
+// another size since it was looked at.
+inline constexpr float kSizedStretch = 1.05F;
+// Edges of a mesh, in delta, in the mean.
+inline constexpr double kMeanEdge = 1.5;
+// alpha_c of an adaptive mesh, as a part of the model's: what (5) smooths of a thin part pulls its
+// rim in. Iguana (adaptive, tolerance 0.05 delta) is 0.61 voxels from its iso-surface at 1, 0.24 at
+// 0.5, 0.17 at 0.25, 0.14 at 0.125.
+inline constexpr float kSizedCurvature = 0.175F;
+// The image is sampled this part of the Laplacian off a vertex: at the mean of its facets, not at
+// the corner. Facets of edges e on a ball of radius R lie e^2 / 8 R inside its corners in the mean,
+// and Laplacians are e^2 / 2 R.
+inline constexpr float kFacets = 0.25F;
+
 // ---- slow vertices (3.6) --------------------------------------------------------------------
 
 // The constraints of a vertex are checked when it has moved 0.2 delta since its last check, or
@@ -137,6 +153,8 @@ inline constexpr float kSmallestBubble = 1.15F;
 // Room between a bubble and the vertices of the rest, in delta: (3) and a little. No point of a
 // face is this far from its corners.
 inline constexpr float kBubbleGap = 1.5F;
+// Places of so many voxels get a bubble in an adaptive mesh, however thin they are.
+inline constexpr int64_t kPlaceVoxels = 27;
 // What still moves is not missed yet: a surface is searched when its energy is below this many
 // epsilon.
 inline constexpr double kLateEnergy = 10;

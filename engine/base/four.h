@@ -15,8 +15,15 @@ inline Four load_four(const float* four) {
   std::memcpy(&f, four, sizeof f);
   return f;
 }
+// The place alone: 0 instead of w.
 inline Four load_four(const Float4& p) {
-  return load_four(&p.x);
+  constexpr FourInts kPlace{-1, -1, -1, 0};
+  FourInts bits;
+  std::memcpy(&bits, &p, sizeof bits);
+  bits &= kPlace;
+  Four f;
+  std::memcpy(&f, &bits, sizeof f);
+  return f;
 }
 inline void store_four(Four f, float* four) {
   std::memcpy(four, &f, sizeof f);

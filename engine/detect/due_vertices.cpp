@@ -1,5 +1,6 @@
 #include "engine/detect/due_vertices.h"
 
+#include <algorithm>
 #include <bit>
 #include <numeric>
 
@@ -44,6 +45,7 @@ void DueVertices::list(const Vector<uint32_t>& blocks, bool all) {
       for (uint32_t lanes = lanes_[i]; lanes != 0; lanes &= lanes - 1) {
         const uint32_t v = blocks[i] * kRingLanes + static_cast<uint32_t>(std::countr_zero(lanes));
         mesh_.path[v] = 0;
+        mesh_.resize(v);
         mesh_.idle[v] = 0;
         *next++ = v;
       }
@@ -54,13 +56,17 @@ void DueVertices::list(const Vector<uint32_t>& blocks, bool all) {
 // Of a block; counts the periods of the others.
 uint16_t DueVertices::due_lanes(uint32_t first, bool all) {
   const float far = all ? 0 : kCheckPath * static_cast<float>(mesh_.delta);
+  const Float4* const position = &mesh_.position[first];
   const float* const path = &mesh_.path[first];
   const uint8_t* const calm = &mesh_.calm[first];
   uint8_t* const idle = &mesh_.idle[first];
   const uint16_t* const valence = mesh_.rings().valence + first;
   int32_t due[kRingLanes];
   for (uint32_t k = 0; k < kRingLanes; ++k) {
-    due[k] = static_cast<int32_t>(path[k] >= far) | static_cast<int32_t>(idle[k] >= kCheckPeriod);
+    // Where the mesh is finer than delta, sooner.
+    const float fine = std::min(1.0F, 1.0F + position[k].w);
+    due[k] =
+        static_cast<int32_t>(path[k] >= far * fine) | static_cast<int32_t>(idle[k] >= kCheckPeriod);
     const int32_t counts = static_cast<int32_t>(calm[k] < kCalmPeriod) & ~due[k];
     idle[k] = static_cast<uint8_t>(idle[k] + (counts & 1));
     due[k] &= static_cast<int32_t>(valence[k] != 0);

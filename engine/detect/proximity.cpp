@@ -39,8 +39,15 @@ std::optional<Candidate> classify(const Mesh& mesh, const Neighbors& of_u, uint3
     return Candidate{Operation::kInversion, distance2, *across};
   }
   if (freshly_cut(mesh, u, w, iteration)) return std::nullopt;
-  if (dot(vertex_normal(mesh, u), vertex_normal(mesh, w)) > kAxialMaxNormalDot) {
+  const Vec3 normal = vertex_normal(mesh, u);
+  if (dot(normal, vertex_normal(mesh, w)) > kAxialMaxNormalDot) {
     return std::nullopt;
+  }
+  // What lies between is what the surface says that it is.
+  if (mesh.sizing != nullptr) {
+    const Vec3 between = mesh.at(w) - mesh.at(u);
+    const bool enclosed = dot(normal, between) < 0;
+    if (mesh.sizing->inside(midpoint(mesh.at(u), mesh.at(w))) == enclosed) return std::nullopt;
   }
   return Candidate{Operation::kAxial, distance2, {std::min(u, w), std::max(u, w), 0, 0}};
 }
@@ -49,11 +56,9 @@ std::optional<Candidate> classify(const Mesh& mesh, const Neighbors& of_u, uint3
 
 std::optional<Candidate> pair_candidate(const Mesh& mesh, uint32_t u, uint32_t w,
                                         uint32_t iteration) {
-  const auto reach = kMinApart * static_cast<float>(mesh.delta);
-  if (!mesh.alive(u) || !mesh.alive(w) ||
-      squared_distance(mesh.at(u), mesh.at(w)) >= reach * reach) {
-    return std::nullopt;
-  }
+  if (!mesh.alive(u) || !mesh.alive(w)) return std::nullopt;
+  const float reach = kMinApart * mesh.size_between(u, w);
+  if (squared_distance(mesh.at(u), mesh.at(w)) >= reach * reach) return std::nullopt;
   const Neighbors ring = mesh.ring(u);
   return ring.contains(w) ? std::nullopt : classify(mesh, ring, u, w, iteration);
 }
@@ -61,13 +66,14 @@ std::optional<Candidate> pair_candidate(const Mesh& mesh, uint32_t u, uint32_t w
 void proximity_candidates(const Mesh& mesh, const SpatialHash& hash, uint32_t u,
                           const Vector<uint32_t>& pending, uint32_t stamp, uint32_t iteration,
                           Vector<Candidate>& candidates) {
-  const auto reach = kMinApart * static_cast<float>(mesh.delta);
+  const float reach = mesh.far_reach(kMinApart) * mesh.size(u);
   const Vec3 p = mesh.at(u);
   const Neighbors ring = mesh.ring(u);
   const Vec3 span{reach, reach, reach};
   const size_t most = candidates.size() + kMostNear;
   hash.visit_box(mesh, p - span, p + span, [&](uint32_t w, Vec3 q) {
-    if (candidates.size() == most || w == u || squared_distance(p, q) >= reach * reach) return;
+    const float near = kMinApart * mesh.size_between(u, w);
+    if (candidates.size() == most || w == u || squared_distance(p, q) >= near * near) return;
     if (pending[w] == stamp && w < u) return;
     if (ring.contains(w)) return;
     if (const auto candidate = classify(mesh, ring, u, w, iteration)) {

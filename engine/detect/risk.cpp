@@ -59,6 +59,13 @@ bool centres_apart(const RiskStar& f, uint32_t k, const RiskStar& g, uint32_t i,
   return apart(extent(p), extent(q), gap * length(axis));
 }
 
+// What vertices of the faces around v move between two checks, as a part of what is usual: where
+// the mesh is finer than delta movements are, too.
+float steps_around(const Mesh& mesh, uint32_t v) {
+  if (mesh.sizing == nullptr) return 1;
+  return std::min(1.0F, (1 + mesh.position[v].w) * (1 + kMaxEdge * mesh.sizing->field.slope()));
+}
+
 }  // namespace
 
 RiskStar::RiskStar(const Mesh& mesh, uint32_t v)
@@ -101,7 +108,7 @@ Extent RiskStar::extent(const Stream& along) const {
 
 Risk::Risk(const Mesh& mesh, uint32_t v)
     : mesh_(mesh),
-      gap_(kRiskGap * static_cast<float>(mesh.delta)),
+      gap_(kRiskGap * static_cast<float>(mesh.delta) * steps_around(mesh, v)),
       star_(mesh, v),
       normal_(mesh.normal.at(v)),
       along_(star_.along(normal_)),

@@ -56,9 +56,7 @@ void Surroundings::search_near(const Vector<uint32_t>& all, const SpatialHash& h
 void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted) {
   assert(std::is_sorted(due.begin(), due.end()));
   assert(due.empty() || due.back() < mesh_.slots());
-  const float reach =
-      (wanted == Wanted::kNear ? kMinApart : kRiskReach) * static_cast<float>(mesh_.delta);
-  const Vec3 span{reach, reach, reach};
+  const float reach = mesh_.far_reach(wanted == Wanted::kNear ? kMinApart : kRiskReach);
   const size_t tasks = block_count(due.size(), kTaskVertices);
   tasks_.resize(std::max(tasks_.size(), tasks));
   run_blocks(executor_, due.size(), kTaskVertices, [&](size_t index, size_t begin, size_t end) {
@@ -70,7 +68,9 @@ void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash, 
     Scratch& scratch = *lent;
     for (size_t i = begin; i < end;) {
       Vec3 low, high;
-      const size_t count = group_size(due.data() + i, end - i, low, high);
+      float size;
+      const size_t count = group_size(due.data() + i, end - i, low, high, size);
+      const Vec3 span{reach * size, reach * size, reach * size};
       hash.collect(mesh_, low - span, high + span, scratch.around);
       search_group(due.data() + i, count, wanted, scratch, task);
       i += count;
@@ -87,9 +87,11 @@ void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash, 
   too_near_.erase(std::unique(too_near_.begin(), too_near_.end()), too_near_.end());
 }
 
-// How many of the vertices make a group, and its box.
-size_t Surroundings::group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high) const {
-  const float longest = kGroupBox * static_cast<float>(mesh_.delta);
+// How many of the vertices make a group, its box and the largest of their sizes.
+size_t Surroundings::group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high,
+                                float& largest) const {
+  const float longest = kGroupBox * mesh_.size(due[0]);
+  largest = mesh_.size(due[0]);
   low = high = mesh_.at(due[0]);
   size_t size = 1;
   for (; size < count; ++size) {
@@ -100,6 +102,7 @@ size_t Surroundings::group_size(const uint32_t* due, size_t count, Vec3& low, Ve
     if (std::max(std::max(extent.x, extent.y), extent.z) > longest) break;
     low = l;
     high = h;
+    largest = std::max(largest, mesh_.size(due[size]));
   }
   return size;
 }
@@ -134,9 +137,10 @@ void Surroundings::search_group(const uint32_t* due, size_t count, Wanted wanted
           ? kernels::NearbyView{x.data(), y.data(), z.data(), x.data(), y.data(), z.data(), around}
           : kernels::NearbyView{x.data(),  y.data(),  z.data(), nx.data(),
                                 ny.data(), nz.data(), around};
-  const float near = kMinApart * static_cast<float>(mesh_.delta);
-  const float far = near_only ? near : kRiskReach * static_cast<float>(mesh_.delta);
+  const float near_reach = mesh_.far_reach(kMinApart);
+  const float far_reach = mesh_.far_reach(near_only ? kMinApart : kRiskReach);
   for (size_t i = 0; i < count; ++i) {
+    const float near = near_reach * mesh_.size(due[i]), far = far_reach * mesh_.size(due[i]);
     const Vec3 p = mesh_.at(due[i]);
     const Vec3 n = near_only ? Vec3{} : mesh_.normal.at(due[i]);
     const uint32_t hits = kernels::near_or_turned(
@@ -151,28 +155,35 @@ void Surroundings::search_group(const uint32_t* due, size_t count, Wanted wanted
   }
 }
 
+bool Surroundings::too_near(uint32_t v, uint32_t w) const {
+  const float near = kMinApart * mesh_.size_between(v, w);
+  return squared_distance(mesh_.at(v), mesh_.at(w)) < near * near;
+}
+
 // The pairs in which v has the smaller id; the other one sees the others.
 void Surroundings::list_near(uint32_t v, uint32_t hits, const Scratch& scratch, Task& task) const {
   const size_t most = task.too_near.size() + kMostNear;
   for (uint32_t k = 0; k < hits && task.too_near.size() < most; ++k) {
     const uint32_t w = scratch.around.ids[scratch.hits[k]];
-    if (w > v && mesh_.alive(w) && !mesh_.adjacent(v, w)) task.too_near.push_back({v, w});
+    if (w > v && mesh_.alive(w) && too_near(v, w) && !mesh_.adjacent(v, w))
+      task.too_near.push_back({v, w});
   }
 }
 
 void Surroundings::judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task) const {
   const Vec3 p = mesh_.at(v), n = mesh_.normal.at(v);
-  const float near = kMinApart * static_cast<float>(mesh_.delta);
   const ClosedRing ring(mesh_, v);
   scratch.turned.clear();
   const size_t most = task.too_near.size() + kMostNear;
   for (uint32_t k = 0; k < hits; ++k) {
     const uint32_t w = scratch.around.ids[scratch.hits[k]];
     if (ring.contains(w) || !mesh_.alive(w)) continue;
-    if (squared_distance(p, mesh_.at(w)) < near * near && task.too_near.size() < most) {
+    if (too_near(v, w) && task.too_near.size() < most) {
       task.too_near.push_back({std::min(v, w), std::max(v, w)});
     }
-    if (dot(n, mesh_.normal.at(w)) <= kRiskDot) scratch.turned.push_back(w);
+    const float far = kRiskReach * mesh_.stretch * std::max(mesh_.size(v), mesh_.size(w));
+    if (dot(n, mesh_.normal.at(w)) <= kRiskDot && squared_distance(p, mesh_.at(w)) <= far * far)
+      scratch.turned.push_back(w);
   }
   if (!scratch.turned.empty()) list_risk(v, scratch.turned, task);
 }

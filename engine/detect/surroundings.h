@@ -61,11 +61,12 @@ class Surroundings {
   void fetch(Wanted wanted, Scratch& scratch) const;
   void search_group(const uint32_t* due, size_t count, Wanted wanted, Scratch& scratch,
                     Task& task) const;
+  bool too_near(uint32_t v, uint32_t w) const;
   void list_near(uint32_t v, uint32_t hits, const Scratch& scratch, Task& task) const;
   void judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task) const;
   // turned: what is turned against v, and near enough.
   void list_risk(uint32_t v, const Vector<uint32_t>& turned, Task& task) const;
-  size_t group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high) const;
+  size_t group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high, float& largest) const;
 
   const Mesh& mesh_;
   const Executor& executor_;

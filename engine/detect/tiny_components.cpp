@@ -109,11 +109,12 @@ int64_t TinyComponents::update(Mesh& mesh, const Vector<uint32_t>& changed) {
   start_floods(mesh);
   Vector<Watched> still;
   int64_t deleted = 0;
-  const double least = kTinyVolume * mesh.delta * mesh.delta * mesh.delta;
   const auto look = [&](uint32_t v, const Watched* known) {
     const auto& component = flood(mesh, v);
     if (component.empty()) return;
     const double volume = signed_volume(mesh, component);
+    const auto size = static_cast<double>(mesh.size(component[0]));
+    const double least = kTinyVolume * size * size * size;
     const bool positive = known != nullptr ? known->positive != 0 : volume > 0;
     if ((volume > 0) != positive || std::abs(volume) < least) {
       for (const uint32_t w : component) mesh.destroy(w);

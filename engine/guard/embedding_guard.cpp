@@ -211,7 +211,18 @@ uint32_t EmbeddingGuard::embedded_corners(const uint32_t* abc) const {
 bool EmbeddingGuard::embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal) {
   take(mesh, proposal);
   if (!proposal.embedded && new_faces_meet()) return false;
-  const float reach = kFaceReach * static_cast<float>(mesh.delta);
+  // Faces are as large as those that they meet are, two edges on.
+  float size = static_cast<float>(mesh.delta);
+  if (mesh.sizing != nullptr) {
+    size = 0;
+    for (const auto& face : proposal.faces) {
+      for (const uint32_t v : face.id) {
+        if (v < mesh.slots()) size = std::max(size, mesh.size(v));
+      }
+    }
+    size *= 1 + kMaxEdge * mesh.sizing->field.slope();
+  }
+  const float reach = mesh.far_reach(kFaceReach) * size;
   FaceBox searched = widened(box_);
   for (int k = 0; k < 3; ++k) {
     searched.low[k] -= reach;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/base/blocks.h"
+#include "engine/base/constants.h"
 #include "pyramid/memory.h"
 
 namespace plc {
@@ -81,6 +82,7 @@ Neighbors Mesh::ring(uint32_t v) const {
 void Mesh::place(uint32_t v, Vec3 p) {
   assert(v < slots_);
   position[v] = {p.x, p.y, p.z, 0};
+  resize(v);
   calm[v] = 0;
 }
 
@@ -206,6 +208,8 @@ void Mesh::remove(uint32_t v, uint32_t neighbor) {
 void Mesh::clear() {
   Mesh empty;
   empty.delta = delta;
+  empty.sizing = sizing;
+  empty.stretch = stretch;
   empty.most_vertices = most_vertices;
   empty.most_neighbors = most_neighbors;
   *this = std::move(empty);
@@ -257,6 +261,8 @@ void Mesh::renumber(const Vector<uint32_t>& order, const Executor& executor) {
   assert(order.size() == alive_ && distinct(order, slots_));
   Mesh to;
   to.delta = delta;
+  to.sizing = sizing;
+  to.stretch = stretch;
   to.most_vertices = most_vertices;
   to.most_neighbors = most_neighbors;
   to.slots_ = to.alive_ = static_cast<uint32_t>(order.size());
@@ -324,6 +330,17 @@ Mesh Mesh::copy() const {
   Mesh to(*this);
   to.refresh_view();
   return to;
+}
+
+float longest_stretch(const Mesh& mesh) {
+  float longest = 0;
+  for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    for (uint32_t k = 0; k < mesh.valence(v); ++k) {
+      const uint32_t w = mesh.neighbor(v, k);
+      longest = std::max(longest, length(mesh.at(v) - mesh.at(w)) / mesh.size_between(v, w));
+    }
+  }
+  return longest / kMaxEdge;
 }
 
 uint64_t Mesh::bytes() const {

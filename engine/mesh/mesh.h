@@ -7,6 +7,7 @@
 
 #include "engine/base/vec3.h"
 #include "engine/mesh/neighbors.h"
+#include "engine/mesh/sizing.h"
 #include "kernels/ring.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
@@ -44,7 +45,8 @@ struct Streams3 {
 //
 //   stream         bytes  unit          written by
 //   position       16     mesh units    move, transformations; a record of four, as it is fetched
-//                                       by neighbour index
+//                                       by neighbour index: w is by how much the size there is
+//                                       above delta, in delta (size_field.h); 0 in a uniform mesh
 //   velocity       12     per time      move, transformations
 //   normal         12     1             normals
 //   displacement   12     mesh units    stages, move
@@ -81,6 +83,27 @@ class Mesh {
 
   // The invariant of (1)-(3), mesh units.
   double delta = 1;
+  // By how much delta is larger or smaller, by place; null: by nothing. Borrowed.
+  const Sizing* sizing = nullptr;
+  // By how much edges may be longer than (2) has them at the sizes of their ends: more where a
+  // level starts with the mesh of another.
+  float stretch = 1;
+  // delta where v is; where an edge is.
+  float size(uint32_t v) const { return static_cast<float>(delta) * (1 + position[v].w); }
+  float size_between(uint32_t u, uint32_t v) const {
+    return static_cast<float>(delta) * (1 + 0.5F * (position[u].w + position[v].w));
+  }
+  // How far one has to look, in sizes where one is, for all that is no farther than `reach` sizes
+  // of where it is itself: sizes grow with the distance.
+  float far_reach(float reach) const {
+    reach *= stretch;
+    return sizing == nullptr ? reach : reach / (1 - reach * sizing->field.slope());
+  }
+  // Looks up the size where v is now, after a movement.
+  void resize(uint32_t v) {
+    Float4& p = position[v];
+    if (sizing != nullptr) p.w = sizing->field.above_delta(p.x, p.y, p.z);
+  }
 
   // Ids are below the first. No vertex gets more neighbours than the second: transformations that
   // would give it more are refused (resolution.h).
@@ -189,6 +212,9 @@ class Mesh {
   Vector<uint32_t> free_;
   RingView view_;
 };
+
+// The longest edge, as a part of what (2) allows at the sizes of its ends.
+float longest_stretch(const Mesh& mesh);
 
 template <typename A, typename B, typename Visit>
 void Mesh::visit_streams(A& a, B& b, const Visit& visit) {

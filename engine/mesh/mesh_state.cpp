@@ -25,7 +25,8 @@ bool within_reach(const Streams3& s) {
 
 bool within_reach(const Buffer<Float4>& b) {
   return std::all_of(b.begin(), b.end(), [](const Float4& p) {
-    return within_reach(p.x) && within_reach(p.y) && within_reach(p.z) && p.w == 0;
+    return within_reach(p.x) && within_reach(p.y) && within_reach(p.z) &&
+           p.w >= SizeField::kLeast && p.w <= SizeField::kMost;
   });
 }
 

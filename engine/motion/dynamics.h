@@ -50,6 +50,7 @@ float stable_time_step(const Model& model, float stiffness = 0);
 //                     mesh's positions, by swapping, and the other where the vertices were
 //   laplacian  16     laplacian, per stage
 //   force      12     forces, per stage; only with other forces than curvature and image
+//   sampled    16     forces, per stage; only of adaptive meshes with other forces than these two
 //   along      24     normals: unit normals of the metric and their steps; only with a metric
 //   user       12     user force, per stage; only where there is one
 //
@@ -92,6 +93,8 @@ class Dynamics {
   // A stage: the forces, and the update under them.
   void run_stage(int stage, const Guide& guide);
   void gather_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end);
+  void scale_by_size(uint32_t begin, uint32_t end);
+  void place_samples(int stage, const Streams3& normal, uint32_t begin, uint32_t end);
   void image_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end);
   // From the last stage to the end of the step: where nothing lies between them in one pass.
   void last_stage_and_move(const Guide& guide);
@@ -136,6 +139,7 @@ class Dynamics {
   Streams3 user_force_;
   Buffer<Float4> stage_[2];
   Buffer<Float4> laplacian_;
+  Buffer<Float4> sampled_;
 };
 
 }  // namespace plc

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "engine/base/constants.h"
-#include "engine/start/image_object.h"
 #include "kernels/image_value.h"
+#include "pyramid/image_object.h"
 #include "pyramid/memory.h"
 
 namespace plc {

@@ -127,6 +127,7 @@ void Recovery::enter(int h) {
   entered_ = h;
   const MeshSpace before = space_;
   space_ = mesh_space(pyramid_, h, spec_.anisotropy);
+  mesh_.sizing = nullptr;
   if (mesh_.vertex_count() != 0) change_space(mesh_, before, space_);
   guide_.image = image_view(pyramid_, h, spec_.pad_voxels, space_);
   guide_.iso = iso_of(h).value_or(0);
@@ -182,15 +183,41 @@ Status Recovery::adapt() {
     ++record().operations.refinement;
   }
   mesh_.delta = target;
+  if (Status s = build_sizing(); !s.ok()) return s;
   for (uint32_t v = 0; v < mesh_.slots(); ++v) {
+    if (mesh_.alive(v)) mesh_.resize(v);
     mesh_.wake(v);
     mesh_.turns[v] = 0;
   }
   evolution_.restart();
   evolution_.notify("refinement");
+  if (mesh_.sizing != nullptr) {
+    // To the sizes of this level, before anything moves.
+    mesh_.stretch = std::max(kSizedStretch, longest_stretch(mesh_));
+    evolution_.check_all(record().seconds, record().operations);
+    mesh_.stretch = kSizedStretch;
+    renumber();
+    evolution_.restart();
+  }
   record().delta = target;
   record().seconds.topology += now() - start;
   record().seconds.total += now() - start;
+  return {};
+}
+
+// Of an adaptive mesh: the sizes of the level.
+Status Recovery::build_sizing() {
+  mesh_.sizing = nullptr;
+  mesh_.stretch = 1;
+  const std::optional<float> iso = iso_of(level_);
+  if (!spec_.sizes || !iso) return {};
+  sizing_.object = {guide_.image, *iso, spec_.inside_above};
+  if (Status s = sizing_.field.build(guide_.image, *iso, mesh_.delta, *spec_.sizes, schedule_);
+      !s.ok()) {
+    return s;
+  }
+  mesh_.sizing = &sizing_;
+  mesh_.stretch = kSizedStretch;
   return {};
 }
 
@@ -322,6 +349,7 @@ Status Recovery::leave_level() {
             "use weaker internal forces"};
   }
   done_ = done_ || level_ == 0;
+  if (done_) mesh_.sizing = nullptr;
   phase_ = Phase::kStart;
   if (done_) {
     progress_.fraction = 1;

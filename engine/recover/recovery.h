@@ -29,6 +29,8 @@ using LevelForce = std::function<Status(int level, const MeshSpace& space, const
 
 struct RecoverySpec {
   Model model;
+  // An adaptive mesh: lengths in delta of each level. None: the paper's, uniform.
+  std::optional<SizeSpec> sizes;
   std::vector<double> isos;  // pi_I per level, normalised; [0] is that of I_0; empty: no iso force
   bool inside_above = true;
   double gradient_bound = 0.1;  // of (8): the largest norm, in window per U_h; used norms are <= 1
@@ -140,6 +142,7 @@ class Recovery {
   Status start_level();
   void enter(int h);
   Status build_gradient_image();
+  Status build_sizing();
   Status adapt();
   void start_round(int number, bool late);
   int iterations_left() const;  // of the round
@@ -183,6 +186,7 @@ class Recovery {
   Round round_;
   int late_iterations_ = 0;  // of the level's rounds after late bubbles
   MeshSpace space_;
+  Sizing sizing_;  // of the level, where the mesh is adaptive
   Guide guide_;
   UserConstraints user_;     // in the space of the level
   Buffer<Float4> gradient_;  // of the level

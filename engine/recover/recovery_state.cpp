@@ -110,7 +110,7 @@ bool Recovery::restore(StateReader& from) {
   evolution_.restore(from);
   if (!from.ok()) return false;
   if (!meeting_faces(mesh_, schedule_, simd_).empty()) return false;
-  return phase_ == Phase::kStart || build_gradient_image().ok();
+  return phase_ == Phase::kStart || (build_gradient_image().ok() && build_sizing().ok());
 }
 
 bool Recovery::restore_tried(StateReader& from) {

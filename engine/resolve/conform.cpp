@@ -58,12 +58,12 @@ double vertices_needed(const Mesh& mesh) {
 
 Status divide_long_edges(Mesh& mesh, OperationCounts& counts) {
   if (vertices_needed(mesh) > static_cast<double>(mesh.most_vertices)) return too_many_vertices();
-  const auto delta = static_cast<float>(mesh.delta);
-  const float longest = kMaxEdge * kMaxEdge * delta * delta;
   // An edge in the queue stays what it is until its turn: only edges taken from it go.
   std::priority_queue<LongEdge> queue;
   const auto consider = [&](uint32_t u, uint32_t v, float squared) {
-    if (squared >= longest) queue.push({squared, std::min(u, v), std::max(u, v)});
+    const float size = mesh.size_between(u, v);
+    if (squared >= kMaxEdge * kMaxEdge * size * size)
+      queue.push({squared, std::min(u, v), std::max(u, v)});
   };
   visit_edges(mesh, consider);
   while (!queue.empty()) {
@@ -95,6 +95,7 @@ void settle(Mesh& mesh, const Executor& executor, Detection& detection, Resoluti
   mesh.renumber(morton_order(mesh, executor), executor);
   detection.restart();
   resolution.restart();
+  if (mesh.sizing != nullptr) mesh.stretch = std::max(kSizedStretch, longest_stretch(mesh));
   for (int pass = 0; pass < kConformPasses; ++pass) {
     const int64_t before = counts.transformations();
     // Nothing freezes here: the passes end where one changes nothing, or there are too many.
@@ -123,6 +124,7 @@ void put_at_rest(Mesh& mesh, const Executor& executor) {
 Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget simd,
                OperationCounts& counts) {
   mesh.delta = delta;
+  for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.resize(v);
   const uint32_t given = mesh.slots();
   if (Status s = divide_long_edges(mesh, counts); !s.ok()) return s;
   if (mesh.slots() != given) {

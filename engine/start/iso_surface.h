@@ -9,8 +9,8 @@
 #include <functional>
 
 #include "engine/mesh/mesh.h"
-#include "engine/start/image_object.h"
 #include "pyramid/executor.h"
+#include "pyramid/image_object.h"
 #include "pyramid/memory.h"
 #include "pyramid/status.h"
 

@@ -102,7 +102,8 @@ Status start_late_bubbles(const ImageObject& object, const Schedule& schedule, S
   // A vertex of an iso-surface lies at most 0.9 of a voxel's diagonal from a voxel of the place.
   float diagonal = 0;
   for (const float scale : object.image.scale) diagonal += 1 / (scale * scale);
-  const float clearance = kBubbleGap * delta + 0.9F * std::sqrt(diagonal);
+  const float finest = mesh.sizing == nullptr ? delta : delta * mesh.sizing->field.finest();
+  const float clearance = kBubbleGap * finest + 0.9F * std::sqrt(diagonal);
   const MissedPlaces places =
       find_missed_places(mesh, object, clearance, kSmallestBubble * delta, schedule, tried);
   for (const Missed kind : {Missed::kPart, Missed::kCavity}) {
@@ -110,6 +111,7 @@ Status start_late_bubbles(const ImageObject& object, const Schedule& schedule, S
     if (count == 0) continue;
     const Cutout cutout(object, places, kind);
     Mesh part;
+    part.sizing = mesh.sizing;
     if (Status s = regular_iso_surface(cutout.object(), cutout.values(), schedule, simd, part);
         !s.ok()) {
       return s;

@@ -6,9 +6,9 @@
 #include "engine/base/schedule.h"
 #include "engine/base/statistics.h"
 #include "engine/mesh/mesh.h"
-#include "engine/start/image_object.h"
 #include "engine/start/voxel_set.h"
 #include "kernels/simd.h"
+#include "pyramid/image_object.h"
 #include "pyramid/status.h"
 
 namespace plc {

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "engine/base/constants.h"
 #include "engine/start/voxel_sides.h"
 #include "kernels/image_value.h"
 #include "pyramid/memory.h"
@@ -58,6 +59,7 @@ class Disagreement {
 struct Place {
   bool holds = false;  // a ball
   bool tried = false;
+  int64_t voxels = 0;
   Voxel low, high;
 };
 
@@ -70,20 +72,22 @@ class Search {
   // Nothing within `clearance` of a vertex is missed.
   void clear_near(const Mesh& mesh, float clearance) {
     for (uint32_t v = 0; v < mesh.slots(); ++v) {
-      if (!mesh.alive(v)) continue;
-      const Float4& p = mesh.position[v];
-      const float at[3] = {p.x, p.y, p.z};
-      Voxel low, high;
-      std::array<float, 3> centre;
-      for (size_t a = 0; a < 3; ++a) {
-        centre[a] = image_.scale[a] * at[a] + image_.offset[a];
-        const float reach = clearance / length_[a];
-        low[a] = std::max(0, static_cast<int32_t>(std::ceil(centre[a] - reach)));
-        high[a] = std::min(image_.dims[a] - 1, static_cast<int32_t>(std::floor(centre[a] + reach)));
-      }
-      for (int32_t z = low[2]; z <= high[2]; ++z) {
-        for (int32_t y = low[1]; y <= high[1]; ++y) {
-          clear_row(centre, clearance, y, z, low[0], high[0]);
+      if (mesh.alive(v)) clear_near(mesh.at(v), clearance);
+    }
+  }
+  // ... nor of a face, which may be larger. Between the places that are looked at are no more than
+  // `apart`.
+  void clear_near_faces(const Mesh& mesh, float apart, float clearance) {
+    const Vector<uint32_t> faces = mesh.faces();
+    for (size_t f = 0; f < faces.size(); f += 3) {
+      const Vec3 a = mesh.at(faces[f]), b = mesh.at(faces[f + 1]), c = mesh.at(faces[f + 2]);
+      const float longest = std::max(std::max(length(b - a), length(c - b)), length(a - c));
+      const int steps = static_cast<int>(std::ceil(longest / apart));
+      for (int i = 0; i <= steps && steps > 1; ++i) {
+        for (int j = 0; i + j <= steps; ++j) {
+          const float u = static_cast<float>(i) / static_cast<float>(steps);
+          const float w = static_cast<float>(j) / static_cast<float>(steps);
+          clear_near(a + (b - a) * u + (c - a) * w, clearance);
         }
       }
     }
@@ -114,6 +118,7 @@ class Search {
     flood(
         seed,
         [&](const Voxel& v) {
+          ++place.voxels;
           place.tried = place.tried || tried.has(v);
           place.holds = place.holds || free(v, kind, around_) || free(v, kind, between_);
           for (size_t a = 0; a < 3; ++a) {
@@ -142,6 +147,22 @@ class Search {
   }
 
  private:
+  void clear_near(Vec3 p, float clearance) {
+    const float at[3] = {p.x, p.y, p.z};
+    Voxel low, high;
+    std::array<float, 3> centre;
+    for (size_t a = 0; a < 3; ++a) {
+      centre[a] = image_.scale[a] * at[a] + image_.offset[a];
+      const float reach = clearance / length_[a];
+      low[a] = std::max(0, static_cast<int32_t>(std::ceil(centre[a] - reach)));
+      high[a] = std::min(image_.dims[a] - 1, static_cast<int32_t>(std::floor(centre[a] + reach)));
+    }
+    for (int32_t z = low[2]; z <= high[2]; ++z) {
+      for (int32_t y = low[1]; y <= high[1]; ++y) {
+        clear_row(centre, clearance, y, z, low[0], high[0]);
+      }
+    }
+  }
   void clear_row(const std::array<float, 3>& centre, float clearance, int32_t y, int32_t z,
                  int32_t low, int32_t high) {
     for (VoxelSet& set : missed_) {
@@ -220,6 +241,10 @@ MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object, flo
   }
   Search search(image, missed);
   search.clear_near(mesh, clearance);
+  if (mesh.sizing != nullptr) {
+    const auto delta = static_cast<float>(mesh.delta);
+    search.clear_near_faces(mesh, kMaxEdge * mesh.sizing->field.finest() * delta, clearance);
+  }
   search.list_ball(radius);
   MissedPlaces places;
   places.low.fill({image.dims[0], image.dims[1], image.dims[2]});
@@ -230,7 +255,8 @@ MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object, flo
     VoxelSet left(missed[k]);
     left.visit([&](const Voxel& seed) {
       const Place place = search.examine(seed, missed[k], tried, left);
-      if (!place.holds || place.tried) return;
+      const bool thin = mesh.sizing != nullptr && place.voxels >= kPlaceVoxels;
+      if (!(place.holds || thin) || place.tried) return;
       ++places.count[k];
       search.keep(seed, missed[k], places.voxels[k], tried);
       for (size_t a = 0; a < 3; ++a) {

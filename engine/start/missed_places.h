@@ -5,9 +5,9 @@
 #include <cstdint>
 
 #include "engine/mesh/mesh.h"
-#include "engine/start/image_object.h"
 #include "engine/start/voxel_set.h"
 #include "pyramid/executor.h"
+#include "pyramid/image_object.h"
 
 namespace plc {
 
@@ -23,8 +23,9 @@ struct MissedPlaces {
 };
 
 // Places are sets of voxels connected by faces, edges or corners: of the object, outside the
-// surface - or not of it, and inside - and none within `clearance` of a vertex (mesh units). Those
-// that hold no ball of `radius`, and those with a voxel that `tried` holds, are left out; the
+// surface - or not of it, and inside - and none within `clearance` (mesh units) of a vertex or,
+// where the mesh is adaptive, of a face. Those that hold no ball of `radius`, where the mesh is
+// adaptive nor kPlaceVoxels voxels, and those with a voxel that `tried` holds, are left out; the
 // others are put into it, which is of the image's voxels or of none yet. The same for any executor.
 MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object, float clearance,
                                 float radius, const Executor& executor, VoxelSet& tried);

@@ -22,7 +22,7 @@ Surface marched(const FineField& field, const plc::LatticeValues& values,
   plc::ImageView image;
   for (size_t a = 0; a < 3; ++a) image.dims[a] = static_cast<int32_t>(field.nodes()[a]);
   plc::Mesh mesh;
-  const plc::Status status = plc::iso_surface(image, values, 0.5F, true, executor, mesh);
+  const plc::Status status = plc::iso_surface({image, 0.5F, true}, values, executor, mesh);
   if (status.code() == plc::ErrorCode::kInvalidData) return {};
   if (!status.ok()) throw plc::tools::Failure{status.message()};
 

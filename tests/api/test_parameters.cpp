@@ -315,7 +315,7 @@ TEST_CASE("the model is what was asked for, with the sign of the object's side",
   p.bubbles[2] = 7;
   p.epsilon = 1e-4;
   p.max_iterations = 77;
-  const plc::RecoverySpec spec = plc::recovery_spec(p);
+  const plc::RecoverySpec spec = plc::recovery_spec(p, 1);
   CHECK(spec.model.curvature == 0.25F);
   CHECK(spec.model.spring == 0.125F);
   CHECK(spec.model.rest_length == plc::RestLength::kValue);
@@ -333,8 +333,8 @@ TEST_CASE("the model is what was asked for, with the sign of the object's side",
   CHECK(spec.pad_voxels == plc::kPadVoxels);
   CHECK(spec.inside_above);
   p.inside_below = 1;
-  CHECK(plc::recovery_spec(p).model.attraction == 2);
-  CHECK_FALSE(plc::recovery_spec(p).inside_above);
+  CHECK(plc::recovery_spec(p, 1).model.attraction == 2);
+  CHECK_FALSE(plc::recovery_spec(p, 1).inside_above);
 }
 
 TEST_CASE("the pyramid is built with the parameters' window, padding and reduction",

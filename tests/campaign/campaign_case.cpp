@@ -111,6 +111,19 @@ void choose_rest(Case& c, Random& random) {
   c.work = kEndless;
 }
 
+// A third of what may have one.
+void choose_mesh(Case& c) {
+  Random random = draws(c.seed, Part::kMesh);
+  plc_parameters& p = c.parameters;
+  if (!once_in(random, 3) || std::isnan(p.iso)) return;
+  p.mesh = PLC_MESH_ADAPTIVE;
+  p.spring = 0;
+  const double voxel = std::min({c.image.spacing[0], c.image.spacing[1], c.image.spacing[2]});
+  if (once_in(random, 2)) p.tolerance = voxel * random.uniform(0.005, 0.5);
+  if (once_in(random, 2)) p.edge_min = voxel * random.uniform(0.3, 1.5);
+  if (once_in(random, 2)) p.edge_max = voxel * random.uniform(1.5, 9.5);
+}
+
 void choose_second(Case& c) {
   Random random = draws(c.seed, Part::kRuns);
   Way& way = c.second;
@@ -194,6 +207,7 @@ Case make_case(uint64_t seed) {
   Random rest = draws(seed, Part::kRest);
   // Without an iso-value a surface may drift where there are no edges, for a thousand iterations.
   if (once_in(rest, 8) && c.parameters.force != PLC_FORCE_GRADIENT) choose_rest(c, rest);
+  choose_mesh(c);
   Random random = draws(seed, Part::kFault);
   if (once_in(random, 16)) choose_fault(c, random);
   return c;
@@ -229,7 +243,8 @@ std::string description(const Case& c) {
       << p.curvature << " spring " << p.spring << " rest " << p.rest_length << ' '
       << p.rest_length_value << " force " << p.force << " attraction " << p.attraction
       << " gradient " << p.gradient << ' ' << p.gradient_tangent << ' ' << p.gradient_bound
-      << " mass " << p.mass << " damping " << p.damping << " time_step " << p.time_step
+      << " mass " << p.mass << " damping " << p.damping << " time_step " << p.time_step << " mesh "
+      << p.mesh << " tolerance " << p.tolerance << " edges " << p.edge_min << "," << p.edge_max
       << " max_move " << p.max_move << " bound " << p.bound << "\n  epsilon " << p.epsilon
       << " calm_speed " << p.calm_speed << " max_iterations " << p.max_iterations
       << " late_bubbles " << p.late_bubbles << " sleeping " << p.sleeping << " more "

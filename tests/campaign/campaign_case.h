@@ -27,7 +27,8 @@ enum class Part : uint64_t {
   kExtras,
   kRuns,
   kFault,
-  kRest
+  kRest,
+  kMesh
 };
 inline Random draws(uint64_t seed, Part part) {
   return Random(seed * 16 + static_cast<uint64_t>(part));

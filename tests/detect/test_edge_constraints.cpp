@@ -5,6 +5,7 @@
 
 #include "engine/base/constants.h"
 #include "engine/transform/deletion.h"
+#include "tests/samples/sample_sizing.h"
 #include "tests/samples/sample_surfaces.h"
 
 namespace {
@@ -94,6 +95,29 @@ TEST_CASE("a short edge of a narrow tube asks for a cut around it", "[edge_const
   CHECK(candidate->edge.a == 8);
   CHECK(candidate->edge.u == 6);
   CHECK(candidate->edge.v == 7);
+}
+
+TEST_CASE("a tube that the image has is not cut", "[edge_constraints]") {
+  const samples::FullImage object(true), other(false);
+  Mesh mesh;
+  samples::fill_mesh(mesh, samples::tube(3, 6, 0.4), 1);
+  mesh.sizing = &object.sizing;
+  CHECK_FALSE(candidate_of(mesh, 6, 7).has_value());
+  mesh.sizing = &other.sizing;
+  REQUIRE(candidate_of(mesh, 6, 7).has_value());
+  CHECK(candidate_of(mesh, 6, 7)->operation == Operation::kAnnular);
+}
+
+TEST_CASE("limits of an edge are those of the sizes at its ends", "[edge_constraints]") {
+  Mesh mesh = octahedron(1);
+  stretch(mesh, 1.4F, 2);
+  CHECK_FALSE(candidate_of(mesh, kU, kV).has_value());
+  mesh.position[kU].w = 1;
+  REQUIRE(candidate_of(mesh, kU, kV).has_value());
+  CHECK(candidate_of(mesh, kU, kV)->operation == Operation::kDeletion);
+  mesh.position[kU].w = mesh.position[kV].w = -0.5F;
+  REQUIRE(candidate_of(mesh, kU, kV).has_value());
+  CHECK(candidate_of(mesh, kU, kV)->operation == Operation::kCreation);
 }
 
 TEST_CASE("of several cycles the shortest is cut, of equal ones that of the smallest id",

@@ -7,6 +7,7 @@
 #include "engine/base/constants.h"
 #include "engine/transform/inversion.h"
 #include "pyramid/memory.h"
+#include "tests/samples/sample_sizing.h"
 #include "tests/samples/sample_surfaces.h"
 
 namespace {
@@ -51,6 +52,25 @@ TEST_CASE("parts that face each other too near ask for an axial transformation",
   CHECK(candidates[0].edge.u == kPole);
   CHECK(candidates[0].edge.v == kOther);
   CHECK(candidates[0].key == Approx(0.0625).epsilon(1e-4));
+}
+
+TEST_CASE("sheets between which the image has what the surface says stay apart", "[proximity]") {
+  const samples::FullImage object(true), other(false);
+  Mesh mesh;
+  samples::fill_mesh(mesh, spheres(0.25), kDelta);
+  mesh.sizing = &other.sizing;
+  CHECK(candidates_of(mesh).empty());
+  mesh.sizing = &object.sizing;
+  CHECK(candidates_of(mesh).size() == 1);
+  // The wall between a cavity and what is around.
+  Soup soup = samples::flipped(samples::sphere(2));
+  soup.append(samples::moved(samples::sphere(2), 0, 0, 0, 1.1));
+  Mesh wall;
+  samples::fill_mesh(wall, soup, kDelta);
+  wall.sizing = &object.sizing;
+  CHECK(candidates_of(wall).empty());
+  wall.sizing = &other.sizing;
+  CHECK(candidates_of(wall).size() == 66);
 }
 
 TEST_CASE("a pair at the distance of (3) is far enough", "[proximity]") {

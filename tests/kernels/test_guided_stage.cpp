@@ -103,6 +103,44 @@ TEST_CASE("a guided stage has the bits of its forces and its update one after th
   }
 }
 
+TEST_CASE("of an adaptive mesh stages have the bits of the scalar twin, and sizes stay",
+          "[kernels]") {
+  const auto sized = [](Stage& s) {
+    for (uint32_t v = 0; v < s.rings.count(); ++v) {
+      s.rings.position[v].w = 0.1F * static_cast<float>(v % 40) - 0.9F;
+    }
+    kernels::SurfaceForces f = s.forces();
+    f.sized = true;
+    f.facets = 0.25F;
+    return f;
+  };
+  Stage uniform;
+  scalar::guided_stage(1, kNewton, uniform.forces(), uniform.rk4(), uniform.all());
+  for (int stage = 0; stage < 4; ++stage) {
+    Stage expected;
+    scalar::guided_stage(stage, kNewton, sized(expected), expected.rk4(), expected.all());
+    if (stage == 1) CHECK(first_difference(expected.result(), uniform.result()) != -1);
+    for (const SimdTarget simd : plc::available_simd_targets()) {
+      CAPTURE(plc::simd_target_name(simd), stage);
+      Stage got;
+      kernels::guided_stage(simd, stage, kNewton, sized(got), got.rk4(), got.all());
+      CHECK(first_difference(got.result(), expected.result()) == -1);
+    }
+  }
+  Stage expected;
+  const auto forces = sized(expected);
+  scalar::guided_move(kNewton, forces, expected.rk4(), kBound, expected.ends(), expected.all());
+  for (uint32_t v = 0; v < expected.rings.count(); ++v) {
+    REQUIRE(expected.moved_to[v].w == expected.rings.position[v].w);
+  }
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    Stage got;
+    const auto f = sized(got);
+    kernels::guided_move(simd, kNewton, f, got.rk4(), kBound, got.ends(), got.all());
+    CHECK(first_difference(got.result(), expected.result()) == -1);
+  }
+}
+
 TEST_CASE("a guided move is the last stage and the move, and writes no rates", "[kernels]") {
   Stage expected;
   const Stage before;

@@ -266,6 +266,24 @@ TEST_CASE("an edge as long as a limit violates it", "[kernels]") {
   }
 }
 
+TEST_CASE("limits of edges are those of the sizes at their ends", "[kernels]") {
+  RandomRings rings = mixed_rings(1, 6);
+  rings.position[0] = {0, 0, 0, 1};
+  for (const uint32_t u : rings.rings[0]) rings.position[u] = {3, 4, 0, 0.5F};
+  const float size = 1.75F * 1.75F;
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    const auto flags = [&](float min_squared, float max_squared) {
+      plc::Vector<uint8_t> all(rings.count(), 9);
+      kernels::edge_violations(simd, rings.view(), rings.position.data(), min_squared, max_squared,
+                               plc::Blocks::range(0, 16), all.data());
+      return static_cast<int>(all[0]);
+    };
+    CHECK(flags(24 / size, 26 / size) == 0);
+    CHECK(flags(25.01F / size, 26 / size) == 1);
+    CHECK(flags(24 / size, 24.99F / size) == 2);
+  }
+}
+
 TEST_CASE("edge violations are found in columns and tails alike", "[kernels]") {
   RandomRings rings = mixed_rings(10, 7);
   const float min_squared = 25.0F * 25.0F, max_squared = 370.0F * 370.0F;

@@ -1,5 +1,6 @@
 // The same bits for any number of threads and any SIMD target, and on any machine.
 #include <catch2/catch.hpp>
+#include <tuple>
 #include <vector>
 
 #include "engine/mesh/state_hash.h"
@@ -125,6 +126,14 @@ Run forces_run() {
   return run;
 }
 
+// Sizes from a third to three times delta.
+Run adaptive_run() {
+  Run run = large_run();
+  run.name = "adaptive";
+  run.recovery.sizes.emplace();
+  return run;
+}
+
 uint64_t hash_of(const Run& run, int threads, SimdTarget target) {
   const plc::Schedule schedule(threads);
   Mesh mesh;
@@ -156,15 +165,15 @@ TEST_CASE("the chain has the recorded hash for any threads and SIMD target", "[d
   }
 }
 
-TEST_CASE("a large run has the recorded hash for any threads and SIMD target, run after run",
+TEST_CASE("large runs, uniform and adaptive, have the recorded hashes, run after run",
           "[determinism]") {
-  const Run run = large_run();
-  constexpr uint64_t kGolden = 0x18B5AD5336899FDC;
+  const auto [run, golden] = GENERATE(table<Run, uint64_t>(
+      {{large_run(), 0x18B5AD5336899FDC}, {adaptive_run(), 0x1EB3DC06A1C10559}}));
   for (const SimdTarget target : targets()) {
     for (const int threads : kThreads) {
       for (int repeat = 0; repeat < (threads == 3 ? 2 : 1); ++repeat) {
-        CAPTURE(plc::simd_target_name(target), threads, repeat);
-        CHECK(hash_of(run, threads, target) == kGolden);
+        CAPTURE(run.name, plc::simd_target_name(target), threads, repeat);
+        CHECK(hash_of(run, threads, target) == golden);
       }
     }
   }

@@ -10,6 +10,8 @@ const Choices<plc_space> kSpaces = {
 const Choices<NiftiFrame> kNiftiFrames = {
     {"auto", NiftiFrame::kAuto}, {"sform", NiftiFrame::kSform}, {"qform", NiftiFrame::kQform}};
 const Choices<plc_bound> kBounds = {{"clamp", PLC_BOUND_CLAMP}, {"scale", PLC_BOUND_SCALE}};
+const Choices<plc_mesh_kind> kMeshes = {{"uniform", PLC_MESH_UNIFORM},
+                                        {"adaptive", PLC_MESH_ADAPTIVE}};
 const Choices<plc_anisotropy> kAnisotropies = {{"physical", PLC_ANISOTROPY_PHYSICAL},
                                                {"voxel", PLC_ANISOTROPY_VOXEL},
                                                {"metric", PLC_ANISOTROPY_METRIC}};
@@ -35,6 +37,15 @@ std::string names_of(const Choices<T>& choices) {
   for (const auto& choice : choices)
     names += (names.empty() ? "" : "|") + std::string(choice.first);
   return names;
+}
+
+void read_edge_range(const std::string& text, plc_parameters& p) {
+  const auto v = to_numbers("--edge-range", text, 2);
+  if (!(v[0] > 0 && v[0] <= v[1])) {
+    refuse_value("--edge-range", text, "a length above 0 and one that is no less");
+  }
+  p.edge_min = v[0];
+  p.edge_max = v[1];
 }
 
 void read_rest_length(const std::string& text, plc_parameters& p) {
@@ -212,6 +223,16 @@ class Declarations {
   }
 
   void model() {
+    group_ = "Mesh";
+    choice("--mesh", kMeshes, p_.mesh,
+           "Edges of one length, the voxels' (uniform, the paper's), or by how much the surface in "
+           "the image bends (adaptive)");
+    number("--tolerance", p_.tolerance,
+           "Adaptive: mean distance in mm between facets and the surface that is aimed at; 0: 1/24 "
+           "of a voxel");
+    text("--edge-range", "MIN,MAX", "",
+         "Adaptive: mean edges lie between, mm; 0.625 and 5 voxels by default",
+         [&p = p_](const std::string& s) { read_edge_range(s, p); });
     group_ = "Model";
     number("--curvature", p_.curvature,
            "alpha_c, smoothing by curvature, >= 0, relative to the attraction");

@@ -50,6 +50,7 @@ extern const Choices<plc_space> kSpaces;
 extern const Choices<NiftiFrame> kNiftiFrames;
 extern const Choices<plc_bound> kBounds;
 extern const Choices<plc_anisotropy> kAnisotropies;
+extern const Choices<plc_mesh_kind> kMeshes;
 extern const Choices<plc_force> kForces;
 extern const Choices<plc_feature> kFeatures;
 extern const Choices<int> kInsides;  // plc_parameters::inside_below

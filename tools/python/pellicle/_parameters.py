@@ -47,6 +47,13 @@ class Parameters:
         where `init` is not given.
     bubbles : tuple of int
         How many bubbles along x, y, z, each 1 .. 256.
+    mesh : {"uniform", "adaptive"}
+        Edges of one length, the voxels' (3.2), or by how much the image's iso-surface bends.
+    tolerance : float
+        Of an adaptive mesh: the mean distance of its facets from that surface, mm; 0: 1/24 of a
+        voxel.
+    edge_min, edge_max : float
+        Of an adaptive mesh: its mean edges lie between, mm; 0: 0.625 and 5 voxels.
     curvature : float
         alpha_c (5), smoothing, >= 0.
     spring : float
@@ -96,6 +103,10 @@ class Parameters:
     reduction: float = _D["reduction"]
     init: Literal["bubble", "bubbles", "seeds", "iso", "mask", "mesh"] = _D["init"]
     bubbles: tuple[int, int, int] = _D["bubbles"]
+    mesh: Literal["uniform", "adaptive"] = _D["mesh"]
+    tolerance: float = _D["tolerance"]
+    edge_min: float = _D["edge_min"]
+    edge_max: float = _D["edge_max"]
     curvature: float = _D["curvature"]
     spring: float = _D["spring"]
     rest_length: Literal["zero", "mean", "value"] = _D["rest_length"]

@@ -1,0 +1,300 @@
+#include "pyramid/size_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "kernels/image_value.h"
+#include "pyramid/memory.h"
+
+namespace plc {
+
+namespace {
+
+constexpr int32_t kCell = 2;  // voxels on a side
+constexpr int32_t kTile = 8;  // cells on a side
+// Voxels around a tile: one for smoothing, one for gradients, two for the window, one for
+// crossings.
+constexpr int32_t kHalo = 5;
+constexpr int32_t kSide = kTile * kCell + 2 * kHalo;
+constexpr size_t kRow = kSide, kPlane = kRow * kSide, kVolume = kPlane * kSide;
+// Variance of the window along an axis, voxels squared: of kWide, and of the two voxels of a cell.
+constexpr double kWindow = 1.25;
+constexpr std::array<float, 3> kNarrow{0.25F, 0.5F, 0.25F};
+constexpr std::array<float, 5> kWide{0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
+// Edges of a mesh of a size, in the mean.
+constexpr double kMeanEdge = 1.5;
+// Facets of edges e lie off a surface of curvature k by about k e^2 / 16 in the mean, once the mean
+// of their distances along the normal is 0.
+constexpr double kOff = 1.0 / 16;
+
+template <size_t kTaps>
+void convolve(const Vector<float>& from, size_t stride, const std::array<float, kTaps>& taps,
+              Vector<float>& to) {
+  const size_t margin = kTaps / 2 * stride;
+  for (size_t i = margin; i < kVolume - margin; ++i) {
+    float sum = 0;
+    for (size_t k = 0; k < kTaps; ++k) sum += taps[k] * from[i + k * stride - margin];
+    to[i] = sum;
+  }
+}
+
+// What lies within the taps' reach of the tile's border is of no use afterwards.
+template <size_t kTaps>
+void smooth(Vector<float>& values, const std::array<float, kTaps>& taps, Vector<float>& scratch) {
+  convolve(values, 1, taps, scratch);
+  convolve(scratch, kRow, taps, values);
+  convolve(values, kPlane, taps, scratch);
+  values.swap(scratch);
+}
+
+// The structure tensor of a part of the image: xx, yy, zz, xy, xz, yz.
+struct Tensor {
+  std::array<float, 6> j{};
+  // The part of the turning across the first eigenvector in that along it, r = (l2 + l3) / l1, from
+  // the invariants of the tensor; at most 1.
+  double turning() const {
+    const float trace = j[0] + j[1] + j[2];
+    if (!(trace > 1e-12F)) return 0;
+    const float minors =
+        j[0] * j[1] + j[0] * j[2] + j[1] * j[2] - j[3] * j[3] - j[4] * j[4] - j[5] * j[5];
+    // minors / trace^2 = r / (1 + r)^2, but for l2 l3.
+    const auto q = std::max(0.0, static_cast<double>(minors / (trace * trace)));
+    if (q < 1e-9) return q;
+    return q >= 0.25 ? 1.0 : (1 - 2 * q - std::sqrt(1 - 4 * q)) / (2 * q);
+  }
+};
+
+class Tile {
+ public:
+  Tile() {
+    for (auto* v : {&value_, &scratch_}) v->resize(kVolume);
+    for (auto& t : tensor_) t.resize(kVolume);
+  }
+
+  // first: its first voxel.
+  void read(const ImageView& image, const std::array<int32_t, 3>& first) {
+    const auto within = [&](int32_t i, size_t a) {
+      return std::clamp(first[a] - kHalo + i, 0, image.dims[a] - 1);
+    };
+    float* to = value_.data();
+    with_voxel_type(image.form.type, [&](auto voxel) {
+      for (int32_t z = 0; z < kSide; ++z) {
+        for (int32_t y = 0; y < kSide; ++y) {
+          for (int32_t x = 0; x < kSide; ++x) {
+            *to++ = image_value<decltype(voxel)>(image, within(x, 0), within(y, 1), within(z, 2));
+          }
+        }
+      }
+    });
+  }
+
+  // Whether the iso-surface passes through, or next to it.
+  bool crosses(float iso) const {
+    float low = value_[0], high = value_[0];
+    for (size_t z = kHalo - 1; z < kSide - kHalo + 1; ++z) {
+      for (size_t y = kHalo - 1; y < kSide - kHalo + 1; ++y) {
+        const float* row = &value_[z * kPlane + y * kRow];
+        for (size_t x = kHalo - 1; x < kSide - kHalo + 1; ++x) {
+          low = std::min(low, row[x]);
+          high = std::max(high, row[x]);
+        }
+      }
+    }
+    return low <= iso && high >= iso;
+  }
+
+  // half: of a difference over two voxels, per delta.
+  void find_tensors(const std::array<float, 3>& half, float iso) {
+    smooth(value_, kNarrow, scratch_);
+    for (auto& t : tensor_) std::fill(t.begin(), t.end(), 0.0F);
+    const float* v = value_.data();
+    constexpr size_t kMargin = kPlane + kRow + 1;
+    for (size_t i = kMargin; i < kVolume - kMargin; ++i) {
+      const float x = (v[i + 1] - v[i - 1]) * half[0];
+      const float y = (v[i + kRow] - v[i - kRow]) * half[1];
+      const float z = (v[i + kPlane] - v[i - kPlane]) * half[2];
+      const float squared = x * x + y * y + z * z;
+      // Within 2 delta of the iso-surface, as far as the gradient tells.
+      const float off = v[i] - iso;
+      const float near = std::max(0.0F, squared - off * off * 0.25F);
+      const float weight = squared > 0 ? near / squared : 0;
+      tensor_[0][i] = weight * x * x;
+      tensor_[1][i] = weight * y * y;
+      tensor_[2][i] = weight * z * z;
+      tensor_[3][i] = weight * x * y;
+      tensor_[4][i] = weight * x * z;
+      tensor_[5][i] = weight * y * z;
+    }
+    for (auto& t : tensor_) smooth(t, kWide, scratch_);
+  }
+
+  // Over the voxels of a cell.
+  Tensor tensor(int32_t x, int32_t y, int32_t z) const {
+    const auto voxel = [](int32_t cell) { return static_cast<size_t>(cell * kCell + kHalo); };
+    const size_t first = voxel(z) * kPlane + voxel(y) * kRow + voxel(x);
+    Tensor sum;
+    for (size_t k = 0; k < 6; ++k) {
+      for (const size_t at : {first, first + kRow, first + kPlane, first + kPlane + kRow}) {
+        sum.j[k] += tensor_[k][at] + tensor_[k][at + 1];
+      }
+    }
+    return sum;
+  }
+
+ private:
+  Vector<float> value_, scratch_;
+  std::array<Vector<float>, 6> tensor_;
+};
+
+uint8_t code(double size) {
+  return static_cast<uint8_t>(std::clamp(size / static_cast<double>(SizeField::kStep), 1.0, 255.0));
+}
+
+}  // namespace
+
+// Of the tiles that the iso-surface passes through.
+class SizeField::Builder {
+ public:
+  Builder(SizeField& field, const ImageView& image, float iso, double delta, const SizeSpec& spec)
+      : field_(field),
+        image_(image),
+        iso_(iso),
+        finest_(code(spec.finest)),
+        coarsest_(code(spec.coarsest)) {
+    double voxel = 0;  // in delta, in the mean over the axes
+    for (size_t a = 0; a < 3; ++a) {
+      tiles_[a] = (field.cells_[a] + kTile - 1) / kTile;
+      half_[a] = 0.5F * image.scale[a] * static_cast<float>(delta);
+      voxel += 1 / (3 * static_cast<double>(image.scale[a]) * delta);
+    }
+    window_ = kWindow * voxel * voxel;
+    factor_ = std::sqrt(spec.tolerance / kOff) / kMeanEdge;
+  }
+
+  void run(const Executor& executor) {
+    std::fill(field_.sizes_.begin(), field_.sizes_.end(), coarsest_);
+    executor.run(static_cast<size_t>(tiles_[2]), [&](size_t z) {
+      Tile tile;
+      for (int32_t y = 0; y < tiles_[1]; ++y) {
+        for (int32_t x = 0; x < tiles_[0]; ++x) {
+          const std::array<int32_t, 3> cell{x * kTile, y * kTile, static_cast<int32_t>(z) * kTile};
+          tile.read(image_, {cell[0] * kCell, cell[1] * kCell, cell[2] * kCell});
+          if (!tile.crosses(iso_)) continue;
+          tile.find_tensors(half_, iso_);
+          fill(tile, cell);
+        }
+      }
+    });
+  }
+
+ private:
+  void fill(const Tile& tile, const std::array<int32_t, 3>& first) {
+    const auto& cells = field_.cells_;
+    const auto row = static_cast<size_t>(cells[0]), plane = row * static_cast<size_t>(cells[1]);
+    for (int32_t z = 0; z < std::min(kTile, cells[2] - first[2]); ++z) {
+      for (int32_t y = 0; y < std::min(kTile, cells[1] - first[1]); ++y) {
+        uint8_t* to =
+            &field_.sizes_[static_cast<size_t>(first[2] + z) * plane +
+                           static_cast<size_t>(first[1] + y) * row + static_cast<size_t>(first[0])];
+        for (int32_t x = 0; x < std::min(kTile, cells[0] - first[0]); ++x) {
+          to[x] = size(tile.tensor(x, y, z));
+        }
+      }
+    }
+  }
+
+  uint8_t size(const Tensor& tensor) const {
+    const double curvature = std::sqrt(tensor.turning() / window_);
+    const double size = factor_ / std::sqrt(std::max(curvature, 1e-6));
+    return std::clamp(code(size), finest_, coarsest_);
+  }
+
+  SizeField& field_;
+  const ImageView& image_;
+  float iso_;
+  uint8_t finest_, coarsest_;
+  std::array<int32_t, 3> tiles_{};
+  std::array<float, 3> half_{};
+  double window_ = 1, factor_ = 1;
+};
+
+Status SizeField::build(const ImageView& image, float iso, double delta, const SizeSpec& spec,
+                        const Executor& executor) {
+  double side = 1e30;  // of a cell, in delta
+  size_t count = 1;
+  for (size_t a = 0; a < 3; ++a) {
+    cells_[a] = (image.dims[a] + kCell - 1) / kCell;
+    count *= static_cast<size_t>(cells_[a]);
+    scale_[a] = image.scale[a] / kCell;
+    offset_[a] = (image.offset[a] + 0.5F) / kCell - 0.5F;
+    side = std::min(side, kCell / static_cast<double>(image.scale[a]) / delta);
+  }
+  slope_ = static_cast<float>(spec.slope);
+  finest_ = static_cast<float>(code(spec.finest)) * kStep;
+  try {
+    sizes_.resize_uninitialized(count);
+    Builder(*this, image, iso, delta, spec).run(executor);
+  } catch (const std::bad_alloc&) {
+    return {ErrorCode::kOutOfMemory, "sizes of an adaptive mesh: out of memory"};
+  }
+  // To the next cube by a face, an edge, a corner.
+  std::array<int, 4> steps{};
+  constexpr std::array<double, 4> kAway{0, 1, 1.414, 1.732};
+  for (size_t k = 1; k < 4; ++k) {
+    steps[k] =
+        std::max(1, static_cast<int>(spec.slope * side * kAway[k] / static_cast<double>(kStep)));
+  }
+  bound_slope(steps);
+  return {};
+}
+
+// Chamfer distances: forth and back.
+void SizeField::bound_slope(const std::array<int, 4>& steps) {
+  sweep(steps, 1);
+  sweep(steps, -1);
+}
+
+// Every cell from those before it in this direction.
+void SizeField::sweep(const std::array<int, 4>& steps, int direction) {
+  const int64_t nx = cells_[0], ny = cells_[1], nz = cells_[2];
+  const auto in_turn = [direction](int64_t k, int64_t n) { return direction > 0 ? k : n - 1 - k; };
+  for (int64_t k = 0; k < nx * ny * nz; ++k) {
+    const int64_t x = in_turn(k % nx, nx), y = in_turn(k / nx % ny, ny);
+    const int64_t z = in_turn(k / (nx * ny), nz);
+    uint8_t& own = sizes_[static_cast<size_t>((z * ny + y) * nx + x)];
+    int least = own;
+    for (int dz = -1; dz <= 0; ++dz) {
+      for (int dy = -1; dy <= (dz == 0 ? 0 : 1); ++dy) {
+        for (int dx = -1; dx <= (dz == 0 && dy == 0 ? -1 : 1); ++dx) {
+          const int64_t u = x + direction * dx, v = y + direction * dy, w = z + direction * dz;
+          if (u < 0 || v < 0 || w < 0 || u >= nx || v >= ny || w >= nz) continue;
+          const auto away = static_cast<size_t>((dx != 0) + (dy != 0) + (dz != 0));
+          least = std::min(least, sizes_[static_cast<size_t>((w * ny + v) * nx + u)] + steps[away]);
+        }
+      }
+    }
+    own = static_cast<uint8_t>(least);
+  }
+}
+
+float SizeField::above_delta(float px, float py, float pz) const {
+  const AxisCell x = axis_cell(px, scale_[0], offset_[0], cells_[0]);
+  const AxisCell y = axis_cell(py, scale_[1], offset_[1], cells_[1]);
+  const AxisCell z = axis_cell(pz, scale_[2], offset_[2], cells_[2]);
+  const auto row = static_cast<size_t>(cells_[0]), plane = row * static_cast<size_t>(cells_[1]);
+  const uint8_t* at = sizes_.data() + static_cast<size_t>(z.index) * plane +
+                      static_cast<size_t>(y.index) * row + static_cast<size_t>(x.index);
+  const auto along_x = [&](const uint8_t* p) {
+    const float a = p[0], b = p[1];
+    return a + (b - a) * x.fraction;
+  };
+  const auto along_y = [&](const uint8_t* p) {
+    const float a = along_x(p), b = along_x(p + row);
+    return a + (b - a) * y.fraction;
+  };
+  const float a = along_y(at), b = along_y(at + plane);
+  return (a + (b - a) * z.fraction) * kStep - 1.0F;
+}
+
+}  // namespace plc

@@ -1,0 +1,59 @@
+// How fine a mesh is to be where it is, from the image alone: small where the iso-surface bends,
+// large where it is flat, and of a bounded slope between. After Lachaud and Taton, Deformable model
+// with a complexity independent from image resolution (CVIU 2005), whose structure tensor tells how
+// much normals turn within a window; here sizes are the same in all directions of the tangent
+// plane, and how near sheets may come is left to the image (engine/mesh/sizing.h).
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "kernels/image.h"
+#include "pyramid/buffer.h"
+#include "pyramid/executor.h"
+#include "pyramid/status.h"
+
+namespace plc {
+
+// What sizes are asked for, in delta of the level's uniform mesh: there every size is 1.
+struct SizeSpec {
+  double finest = 0.5, coarsest = 4;  // within [1/32, 255/32]
+  // Of facets from a surface that bends as the image's does, the mean distance along its normal.
+  double tolerance = 0.05;
+  double slope = 0.1;  // by how much sizes grow with the distance, at most
+};
+
+// Sizes of cubes of voxels: a byte each, in steps of 1/32 delta. Immutable once built; read by any
+// thread.
+class SizeField {
+ public:
+  static constexpr float kStep = 1.0F / 32;
+  // What above_delta() may be.
+  static constexpr float kLeast = kStep - 1, kMost = 255 * kStep - 1;
+
+  // image: of the level, its scale and offset those of mesh space. delta: in mesh units. The same
+  // bits for any executor. Where the iso-surface is not near, sizes are the coarsest that the slope
+  // allows. Errors: kOutOfMemory.
+  Status build(const ImageView& image, float iso, double delta, const SizeSpec& spec,
+               const Executor& executor);
+
+  // By how much the size at a place of mesh space is above delta, in delta: what a mesh keeps with
+  // its vertices. Trilinear between the centres of the cubes; beyond the image that of its border.
+  float above_delta(float x, float y, float z) const;
+
+  // The smallest size asked for, in delta.
+  float finest() const { return finest_; }
+  // No size is larger than another by more than this times their distance.
+  float slope() const { return slope_; }
+
+ private:
+  class Builder;
+  void bound_slope(const std::array<int, 4>& steps);
+  void sweep(const std::array<int, 4>& steps, int direction);
+
+  std::array<int32_t, 3> cells_{0, 0, 0};
+  std::array<float, 3> scale_{1, 1, 1}, offset_{0, 0, 0};  // mesh space to cells
+  float slope_ = 0, finest_ = 1;
+  Buffer<uint8_t> sizes_;
+};
+
+}  // namespace plc

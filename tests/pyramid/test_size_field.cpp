@@ -1,0 +1,121 @@
+#include "pyramid/size_field.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "engine/base/schedule.h"
+#include "tests/samples/sample_surfaces.h"
+
+namespace {
+
+constexpr int kSide = 48;
+constexpr float kMiddle = 23.5F;
+
+// A voxel of 0.8 mesh units, from the origin on.
+struct Image {
+  std::vector<float> values;
+  plc::ImageView view() const {
+    return {values.data(), {kSide, kSide, kSide}, {1.25F, 1.25F, 1.25F}, {0, 0, 0}, {}};
+  }
+};
+
+// distance: to the surface in voxels, > 0 inside.
+template <typename Distance>
+Image image_of(const Distance& distance) {
+  Image image;
+  for (int z = 0; z < kSide; ++z) {
+    for (int y = 0; y < kSide; ++y) {
+      for (int x = 0; x < kSide; ++x) {
+        const float d =
+            distance(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
+        image.values.push_back(std::clamp(0.5F + 0.2F * d, 0.0F, 1.0F));
+      }
+    }
+  }
+  return image;
+}
+
+Image ball(float radius) {
+  return image_of([=](float x, float y, float z) {
+    return radius - std::hypot(std::hypot(x - kMiddle, y - kMiddle), z - kMiddle);
+  });
+}
+
+plc::SizeField field_of(const Image& image, const plc::SizeSpec& spec = {},
+                        const plc::Executor& executor = samples::kSerial) {
+  plc::SizeField field;
+  REQUIRE(field.build(image.view(), 0.5F, 1, spec, executor).message() == "");
+  return field;
+}
+
+// At a place in voxels.
+float at(const plc::SizeField& field, float x, float y, float z) {
+  return 1 + field.above_delta(x * 0.8F, y * 0.8F, z * 0.8F);
+}
+
+}  // namespace
+
+TEST_CASE("flat parts are meshed as coarsely as is asked for, whatever their direction",
+          "[size_field]") {
+  for (const float tilt : {0.0F, 0.3F, 1.0F}) {
+    const float norm = std::sqrt(1 + 1.09F * tilt * tilt);
+    const Image plane = image_of([=](float x, float y, float z) {
+      return (x - kMiddle + tilt * (y - kMiddle) + 0.3F * tilt * (z - kMiddle)) / norm;
+    });
+    CHECK(at(field_of(plane), kMiddle, kMiddle, kMiddle) > 3.4F);
+  }
+}
+
+TEST_CASE("sizes go with the root of the radius and of the tolerance", "[size_field]") {
+  const auto on_surface = [](float radius, double tolerance) {
+    plc::SizeSpec spec;
+    spec.tolerance = tolerance;
+    spec.finest = 0.1;
+    return at(field_of(ball(radius), spec), kMiddle + radius, kMiddle, kMiddle);
+  };
+  const float small = on_surface(5, 0.05), large = on_surface(15, 0.05);
+  CHECK(large / small == Approx(std::sqrt(3.0)).epsilon(0.15));
+  CHECK(on_surface(10, 0.0125) / on_surface(10, 0.05) == Approx(0.5).epsilon(0.1));
+  // e^2 kappa / 16 = tolerance, both curvatures together; edges of 1.5 sizes; delta is 1.25 voxels.
+  const double radius = 10 * 0.8, edge = std::sqrt(0.05 * 16 * radius / std::sqrt(2.0));
+  CHECK(static_cast<double>(on_surface(10, 0.05)) == Approx(edge / 1.5).epsilon(0.25));
+}
+
+TEST_CASE("rods get the finest size, plates as thin do not", "[size_field]") {
+  const Image rod =
+      image_of([](float x, float y, float) { return 1.2F - std::hypot(x - kMiddle, y - kMiddle); });
+  const Image plate = image_of([](float x, float, float) { return 1.2F - std::abs(x - kMiddle); });
+  CHECK(at(field_of(rod), kMiddle + 1.2F, kMiddle, kMiddle) < 0.9F);
+  CHECK(at(field_of(plate), kMiddle + 1.2F, kMiddle, kMiddle) > 2);
+}
+
+TEST_CASE("sizes grow no faster than their slope, and are the same for any executor",
+          "[size_field]") {
+  plc::SizeSpec spec;
+  spec.slope = 0.2;
+  const Image image = ball(4);
+  const plc::SizeField field = field_of(image, spec),
+                       again = field_of(image, spec, plc::Schedule(4));
+  CHECK(field.slope() == 0.2F);
+  CHECK(field.finest() == 0.5F);
+  float most = 0;
+  for (float z = 0; z < kSide; z += 2.1F) {
+    for (float y = 0; y < kSide; y += 2.3F) {
+      for (float x = 0; x < kSide - 1; x += 1.7F) {
+        REQUIRE(at(field, x, y, z) == at(again, x, y, z));
+        most = std::max(most, std::abs(at(field, x + 1, y, z) - at(field, x, y, z)) / 0.8F);
+      }
+    }
+  }
+  CHECK(most > 0.15F);
+  CHECK(most < 0.21F);
+}
+
+TEST_CASE("beyond the image sizes are those of its border", "[size_field]") {
+  const plc::SizeField field = field_of(ball(10));
+  CHECK(at(field, -50, kMiddle, kMiddle) == at(field, 0, kMiddle, kMiddle));
+  CHECK(at(field, 1e9F, NAN, kMiddle) >= plc::SizeField::kStep);
+  CHECK(field.above_delta(NAN, NAN, NAN) >= plc::SizeField::kLeast);
+}

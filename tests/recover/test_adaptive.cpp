@@ -1,0 +1,142 @@
+// Adaptive meshes: finer than the voxels where the image asks for it, coarser where it does not.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "engine/base/state_io.h"
+#include "engine/guard/self_meeting.h"
+#include "engine/measure/measures.h"
+#include "engine/mesh/mesh_invariants.h"
+#include "engine/mesh/state_hash.h"
+#include "tests/samples/sample_runs.h"
+
+namespace {
+
+using plc::Mesh;
+using samples::Run;
+
+struct Result {
+  Mesh mesh;
+  std::vector<plc::LevelRecord> records;
+  plc::SurfaceMeasures measures;
+};
+
+Result recovered(Run run, const plc::SizeSpec& sizes = {}) {
+  run.recovery.sizes = sizes;
+  Result r;
+  const plc::Schedule schedule(2);
+  const auto target = plc::best_simd_target();
+  REQUIRE(plc::pyramidal_recover_shape(samples::pyramid_of(run), run.recovery, schedule, target, {},
+                                       r.mesh, r.records)
+              .message() == "");
+  CHECK(plc::broken_invariant(r.mesh) == "");
+  CHECK(plc::meeting_faces(r.mesh, schedule).empty());
+  for (const auto& record : r.records) CHECK((record.converged || record.vertices == 0));
+  plc::Vector<float> xyz;
+  for (uint32_t v = 0; v < r.mesh.slots(); ++v) {
+    const plc::Vec3 p = r.mesh.at(v);
+    xyz.insert(xyz.end(), {p.x, p.y, p.z});
+  }
+  const auto faces = r.mesh.faces();
+  r.measures =
+      plc::surface_measures(xyz.data(), r.mesh.slots(), faces.data(), faces.size() / 3, schedule);
+  return r;
+}
+
+template <typename Distance>
+Run run_of(const char* name, const std::array<int64_t, 3>& dims, const Distance& distance) {
+  samples::Volume volume = samples::empty_volume(dims);
+  volume.values.clear();
+  for (int64_t z = 0; z < dims[2]; ++z) {
+    for (int64_t y = 0; y < dims[1]; ++y) {
+      for (int64_t x = 0; x < dims[0]; ++x) {
+        const double d =
+            distance(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
+        volume.values.push_back(static_cast<float>(std::clamp(0.5 + 0.5 * d, 0.0, 1.0)));
+      }
+    }
+  }
+  Run run = samples::make_run(name, std::move(volume), 0.5, 2);
+  // Thin parts fade on coarse levels.
+  run.recovery.isos = {0.5, 0.3, 0.3};
+  run.recovery.model.time_step = 1.5F;
+  return run;
+}
+
+// An edge of length 28 voxels, edges rounded.
+Run cube() {
+  return run_of("cube", {44, 44, 44}, [](double x, double y, double z) {
+    const auto out = [](double c) { return std::max(std::abs(c - 21.5) - 12, 0.0); };
+    return 2 - std::sqrt(out(x) * out(x) + out(y) * out(y) + out(z) * out(z));
+  });
+}
+
+Run rod(double radius) {
+  return run_of("rod", {24, 24, 64}, [radius](double x, double y, double z) {
+    const double along = std::max(std::abs(z - 31.5) - 24, 0.0);
+    const double across = std::hypot(x - 11.3, y - 11.6);
+    return radius - std::hypot(across, along);
+  });
+}
+
+// Tilted.
+Run plate(double half) {
+  return run_of("plate", {48, 48, 48}, [half](double x, double y, double z) {
+    const double a = x - 23.5, b = y - 23.5, c = z - 23.5;
+    const double off = (a + 0.4 * b + 0.2 * c) / std::sqrt(1.2);
+    const double within = std::sqrt(std::max(a * a + b * b + c * c - off * off, 0.0));
+    return std::min(half - std::abs(off), 16 - within);
+  });
+}
+
+}  // namespace
+
+TEST_CASE("flat parts take a quarter of the vertices that the finest size takes everywhere",
+          "[adaptive]") {
+  plc::SizeSpec everywhere;
+  everywhere.coarsest = everywhere.finest;
+  const Result finest = recovered(cube(), everywhere), adaptive = recovered(cube());
+  CAPTURE(finest.mesh.vertex_count(), adaptive.mesh.vertex_count());
+  CHECK(4 * adaptive.mesh.vertex_count() < finest.mesh.vertex_count());
+  CHECK(adaptive.measures.volume == Approx(finest.measures.volume).epsilon(0.01));
+}
+
+TEST_CASE("a rod of two voxels, which a uniform mesh loses, is there whole", "[adaptive]") {
+  const Result r = recovered(rod(1.1));
+  CHECK(r.measures.components == 1);
+  CHECK(r.measures.genus == 0);
+  // A cylinder of radius 1.1 and 48 voxels, two half balls.
+  constexpr double kPi = 3.14159265358979;
+  CHECK(r.measures.volume == Approx(kPi * 1.21 * 48 + 4.0 / 3 * kPi * 1.331).epsilon(0.2));
+}
+
+TEST_CASE("a plate of a voxel and a half stays whole", "[adaptive]") {
+  const Result r = recovered(plate(0.75));
+  CHECK(r.measures.components == 1);
+  CHECK(r.measures.genus == 0);
+  CHECK(r.measures.volume == Approx(3.14159 * 256 * 1.5).epsilon(0.15));
+}
+
+TEST_CASE("an adaptive run that is saved and restored goes on with the same bits", "[adaptive]") {
+  Run run = cube();
+  run.recovery.sizes.emplace();
+  const plc::Schedule schedule(2);
+  const auto target = plc::best_simd_target();
+  std::vector<plc::LevelRecord> records, records_again;
+  Mesh mesh, again;
+  plc::Recovery whole(samples::pyramid_of(run), run.recovery, schedule, target, {}, mesh, records);
+  REQUIRE(whole.start().message() == "");
+  for (int i = 0; i < 45; ++i) REQUIRE(whole.advance(plc::Amount::kIteration).message() == "");
+  plc::StateWriter size;
+  whole.save(size);
+  std::vector<uint8_t> bytes(size.size());
+  plc::StateWriter writer(bytes.data());
+  whole.save(writer);
+  plc::Recovery restored(samples::pyramid_of(run), run.recovery, schedule, target, {}, again,
+                         records_again);
+  plc::StateReader reader(bytes.data(), bytes.size());
+  REQUIRE(restored.restore(reader));
+  REQUIRE(whole.advance(plc::Amount::kAll).message() == "");
+  REQUIRE(restored.advance(plc::Amount::kAll).message() == "");
+  CHECK(plc::state_hash(mesh) == plc::state_hash(again));
+}
