@@ -1,5 +1,6 @@
 // The triangulated mesh (3.1): structure-of-arrays vertex streams and oriented neighbour rings.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstdint>
@@ -98,6 +99,10 @@ class Mesh {
   float far_reach(float reach) const {
     reach *= stretch;
     return sizing == nullptr ? reach : reach / (1 - reach * sizing->field.slope());
+  }
+  // Whether every size is delta.
+  bool uniform() const {
+    return std::all_of(position.begin(), position.end(), [](const Float4& p) { return p.w == 0; });
   }
   // Looks up the size where v is now, after a movement.
   void resize(uint32_t v) {

@@ -353,3 +353,36 @@ TEST_CASE("the pyramid is built with the parameters' window, padding and reducti
   CHECK(spec.pad_value == -5);
   CHECK(spec.pad_voxels == plc::kPadVoxels);
 }
+
+TEST_CASE("lengths of an adaptive mesh are derived from the voxels, and checked against them",
+          "[parameters]") {
+  plc_parameters p = defaults();
+  CHECK(plc::derive_mesh(2, p).ok());
+  CHECK(p.edge_max == 0);  // a uniform mesh has none
+  CHECK_FALSE(plc::recovery_spec(p, 2).sizes.has_value());
+  p.mesh = PLC_MESH_ADAPTIVE;
+  REQUIRE(plc::derive_mesh(2, p).ok());
+  CHECK(p.tolerance == Approx(2.0 / 24));
+  CHECK(p.edge_min == Approx(1.25));
+  CHECK(p.edge_max == Approx(10));
+  const auto sizes = plc::recovery_spec(p, 2).sizes;
+  REQUIRE(sizes.has_value());
+  CHECK(sizes->finest == Approx(0.5));
+  CHECK(sizes->coarsest == Approx(4));
+  CHECK(sizes->tolerance == Approx(0.05));
+  p.edge_max = 1;
+  CHECK(plc::derive_mesh(2, p).message() ==
+        "edges of 1.25 .. 1 mm: must be a range within 0.3125 .. 19.75 mm for voxels of 2 mm");
+}
+
+TEST_CASE("an adaptive mesh needs an iso-value and has no springs", "[parameters]") {
+  CHECK(refusal([](plc_parameters& p) {
+          p.mesh = PLC_MESH_ADAPTIVE;
+          p.spring = 0.1;
+        }) == "mesh adaptive: has no springs, which draw edges to one length");
+  CHECK(refusal([](plc_parameters& p) {
+          p.mesh = PLC_MESH_ADAPTIVE;
+          p.iso = NAN;
+          p.force = PLC_FORCE_GRADIENT;
+        }) == "mesh adaptive: needs an iso-value, from which its sizes are derived");
+}

@@ -428,7 +428,10 @@ TEST_CASE("a saved mesh is restored unless it has values that no mesh has", "[me
   const float beyond = 2 * plc::kReach;
   CHECK(restored([](Mesh&) {}));
   CHECK_FALSE(restored([&](Mesh& m) { m.place(7, {0, beyond, 0}); }));
-  CHECK_FALSE(restored([](Mesh& m) { m.position[7].w = 1; }));
+  CHECK(restored([](Mesh& m) { m.position[7].w = 1; }));
+  for (const float size : {-1.0F, 8.0F, NAN}) {
+    CHECK_FALSE(restored([=](Mesh& m) { m.position[7].w = size; }));
+  }
   CHECK_FALSE(restored([&](Mesh& m) { m.velocity.set(7, {-beyond, 0, 0}); }));
   CHECK_FALSE(restored([&](Mesh& m) { m.displacement.set(7, {0, 0, beyond}); }));
   CHECK_FALSE(restored([&](Mesh& m) { m.normal.set(7, {NAN, 0, 0}); }));

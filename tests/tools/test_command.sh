@@ -101,6 +101,13 @@ option --time-step nan
 option --max-move 0
 option --max-move 2
 option --bound wall
+option --mesh fine
+option --tolerance -1
+option --edge-range 3,1
+option --edge-range 0,1
+extract "edges too short for the voxels" "must be a range within" ball.nrrd --iso 0.5 \
+  --mesh adaptive --edge-range 0.001,1
+extract "springs of an adaptive mesh" "no springs" ball.nrrd --iso 0.5 --mesh adaptive --spring 0.1
 option --epsilon 0
 option --max-iterations 0
 option --curvature -1
@@ -209,9 +216,14 @@ measure "JSON that is the mesh" "both" tetra.off --curvature -o out/mesh.ply --j
 works "--version" 0 "$pellicle" --version
 works "--help" 0 "$pellicle" extract --help
 for name in iso level-iso inside levels reduction init curvature spring rest-length attraction mass \
-  damping time-step max-move bound epsilon max-iterations window pad threads simd report quiet; do
+  damping time-step max-move mesh tolerance edge-range bound epsilon max-iterations window pad threads simd report quiet; do
   says "help of extract" "--$name" stdout
 done
+works "--mesh adaptive" 0 "$pellicle" extract ball.mha --iso 0.5 --mesh adaptive --tolerance 0.1 \
+  --edge-range 0.5,4 -o out/mesh.ply --report out/adaptive.json
+says "report of --mesh adaptive" '"mesh": "adaptive"' out/adaptive.json
+says "report of --tolerance" '"tolerance": 0.1' out/adaptive.json
+works "check of an adaptive mesh" 0 "$pellicle" check out/mesh.ply
 works "--no-sleeping" 0 "$pellicle" extract ball.mha --iso 0.5 --no-sleeping -o out/mesh.ply \
   --report out/flag.json
 says "report of --no-sleeping" '"sleeping": false' out/flag.json
