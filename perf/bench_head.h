@@ -47,7 +47,7 @@ struct HeadVolume {
                             plc::Pyramid& pyramid) const {
     const plc::SimdTarget simd = plc::best_simd_target();
     demand(plc::build_pyramid(volume, plc::pyramid_spec(p), schedule, simd, pyramid));
-    plc::RecoverySpec spec = plc::recovery_spec(p);
+    plc::RecoverySpec spec = plc::recovery_spec(p, pyramid.levels[0].unit);
     spec.isos = plc::covering_isos(pyramid, plc::normalised(p, kBone), true,
                                    plc::level_iso_bound(p, background), schedule, simd);
     return spec;

@@ -131,7 +131,9 @@ class Tile {
 
   // Over the voxels of a cell.
   Tensor tensor(int32_t x, int32_t y, int32_t z) const {
-    const auto voxel = [](int32_t cell) { return static_cast<size_t>(cell * kCell + kHalo); };
+    const auto voxel = [](int32_t cell) {
+      return static_cast<size_t>(cell) * kCell + static_cast<size_t>(kHalo);
+    };
     const size_t first = voxel(z) * kPlane + voxel(y) * kRow + voxel(x);
     Tensor sum;
     for (size_t k = 0; k < 6; ++k) {

@@ -110,7 +110,8 @@ bool Recovery::restore(StateReader& from) {
   evolution_.restore(from);
   if (!from.ok()) return false;
   if (!meeting_faces(mesh_, schedule_, simd_).empty()) return false;
-  if (phase_ != Phase::kStart && !(build_gradient_image().ok() && build_sizing().ok())) return false;
+  if (phase_ != Phase::kStart && !(build_gradient_image().ok() && build_sizing().ok()))
+    return false;
   return spec_.sizes || mesh_.uniform();
 }
 
