@@ -234,6 +234,7 @@ Status SizeField::build(const ImageView& image, float iso, double delta, const S
   }
   slope_ = static_cast<float>(spec.slope);
   finest_ = static_cast<float>(code(spec.finest)) * kStep;
+  coarsest_ = static_cast<float>(code(spec.coarsest)) * kStep;
   try {
     sizes_.resize_uninitialized(count);
     Builder(*this, image, iso, delta, spec).run(executor);

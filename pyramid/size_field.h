@@ -40,8 +40,9 @@ class SizeField {
   // its vertices. Trilinear between the centres of the cubes; beyond the image that of its border.
   float above_delta(float x, float y, float z) const;
 
-  // The smallest size asked for, in delta.
+  // The smallest and the largest size asked for, in delta.
   float finest() const { return finest_; }
+  float coarsest() const { return coarsest_; }
   // No size is larger than another by more than this times their distance.
   float slope() const { return slope_; }
 
@@ -52,7 +53,7 @@ class SizeField {
 
   std::array<int32_t, 3> cells_{0, 0, 0};
   std::array<float, 3> scale_{1, 1, 1}, offset_{0, 0, 0};  // mesh space to cells
-  float slope_ = 0, finest_ = 1;
+  float slope_ = 0, finest_ = 1, coarsest_ = 1;
   Buffer<uint8_t> sizes_;
 };
 

@@ -66,7 +66,7 @@ std::optional<Candidate> pair_candidate(const Mesh& mesh, uint32_t u, uint32_t w
 void proximity_candidates(const Mesh& mesh, const SpatialHash& hash, uint32_t u,
                           const Vector<uint32_t>& pending, uint32_t stamp, uint32_t iteration,
                           Vector<Candidate>& candidates) {
-  const float reach = mesh.far_reach(kMinApart) * mesh.size(u);
+  const float reach = mesh.far_reach(kMinApart, mesh.size(u));
   const Vec3 p = mesh.at(u);
   const Neighbors ring = mesh.ring(u);
   const Vec3 span{reach, reach, reach};

@@ -56,7 +56,7 @@ void Surroundings::search_near(const Vector<uint32_t>& all, const SpatialHash& h
 void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted) {
   assert(std::is_sorted(due.begin(), due.end()));
   assert(due.empty() || due.back() < mesh_.slots());
-  const float reach = mesh_.far_reach(wanted == Wanted::kNear ? kMinApart : kRiskReach);
+  const float reach = wanted == Wanted::kNear ? kMinApart : kRiskReach;
   const size_t tasks = block_count(due.size(), kTaskVertices);
   tasks_.resize(std::max(tasks_.size(), tasks));
   run_blocks(executor_, due.size(), kTaskVertices, [&](size_t index, size_t begin, size_t end) {
@@ -70,7 +70,8 @@ void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash, 
       Vec3 low, high;
       float size;
       const size_t count = group_size(due.data() + i, end - i, low, high, size);
-      const Vec3 span{reach * size, reach * size, reach * size};
+      const float far = mesh_.far_reach(reach, size);
+      const Vec3 span{far, far, far};
       hash.collect(mesh_, low - span, high + span, scratch.around);
       search_group(due.data() + i, count, wanted, scratch, task);
       i += count;
@@ -137,10 +138,9 @@ void Surroundings::search_group(const uint32_t* due, size_t count, Wanted wanted
           ? kernels::NearbyView{x.data(), y.data(), z.data(), x.data(), y.data(), z.data(), around}
           : kernels::NearbyView{x.data(),  y.data(),  z.data(), nx.data(),
                                 ny.data(), nz.data(), around};
-  const float near_reach = mesh_.far_reach(kMinApart);
-  const float far_reach = mesh_.far_reach(near_only ? kMinApart : kRiskReach);
   for (size_t i = 0; i < count; ++i) {
-    const float near = near_reach * mesh_.size(due[i]), far = far_reach * mesh_.size(due[i]);
+    const float near = mesh_.far_reach(kMinApart, mesh_.size(due[i]));
+    const float far = near_only ? near : mesh_.far_reach(kRiskReach, mesh_.size(due[i]));
     const Vec3 p = mesh_.at(due[i]);
     const Vec3 n = near_only ? Vec3{} : mesh_.normal.at(due[i]);
     const uint32_t hits = kernels::near_or_turned(

@@ -222,7 +222,7 @@ bool EmbeddingGuard::embeds(const Mesh& mesh, const SpatialHash& hash, const Pro
     }
     size *= 1 + kMaxEdge * mesh.sizing->field.slope();
   }
-  const float reach = mesh.far_reach(kFaceReach) * size;
+  const float reach = mesh.far_reach(kFaceReach, size);
   FaceBox searched = widened(box_);
   for (int k = 0; k < 3; ++k) {
     searched.low[k] -= reach;

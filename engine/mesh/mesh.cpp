@@ -210,6 +210,7 @@ void Mesh::clear() {
   empty.delta = delta;
   empty.sizing = sizing;
   empty.stretch = stretch;
+  empty.longest_edge = longest_edge;
   empty.most_vertices = most_vertices;
   empty.most_neighbors = most_neighbors;
   *this = std::move(empty);
@@ -263,6 +264,7 @@ void Mesh::renumber(const Vector<uint32_t>& order, const Executor& executor) {
   to.delta = delta;
   to.sizing = sizing;
   to.stretch = stretch;
+  to.longest_edge = longest_edge;
   to.most_vertices = most_vertices;
   to.most_neighbors = most_neighbors;
   to.slots_ = to.alive_ = static_cast<uint32_t>(order.size());
@@ -332,15 +334,18 @@ Mesh Mesh::copy() const {
   return to;
 }
 
-float longest_stretch(const Mesh& mesh) {
-  float longest = 0;
+void measure_edges(Mesh& mesh) {
+  float longest = 0, of_size = 0;
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     for (uint32_t k = 0; k < mesh.valence(v); ++k) {
       const uint32_t w = mesh.neighbor(v, k);
-      longest = std::max(longest, length(mesh.at(v) - mesh.at(w)) / mesh.size_between(v, w));
+      const float edge = length(mesh.at(v) - mesh.at(w));
+      longest = std::max(longest, edge);
+      of_size = std::max(of_size, edge / mesh.size_between(v, w));
     }
   }
-  return longest / kMaxEdge;
+  mesh.stretch = std::max(kSizedStretch, of_size / kMaxEdge);
+  mesh.longest_edge = std::max(longest, mesh.longest_sized_edge());
 }
 
 uint64_t Mesh::bytes() const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <new>
 
+#include "engine/base/constants.h"
 #include "engine/base/vec3.h"
 #include "engine/mesh/neighbors.h"
 #include "engine/mesh/sizing.h"
@@ -94,11 +95,20 @@ class Mesh {
   float size_between(uint32_t u, uint32_t v) const {
     return static_cast<float>(delta) * (1 + 0.5F * (position[u].w + position[v].w));
   }
-  // How far one has to look, in sizes where one is, for all that is no farther than `reach` sizes
-  // of where it is itself: sizes grow with the distance.
-  float far_reach(float reach) const {
+  // Of the largest size there may be.
+  float longest_sized_edge() const {
+    return kSizedStretch * kMaxEdge * static_cast<float>(delta) * sizing->field.coarsest();
+  }
+  // In an adaptive mesh no edge is longer; mesh units.
+  float longest_edge = 0;
+  // How far one has to look, where the size is `from`, for all that is no farther than `reach`
+  // sizes of where it is itself: sizes grow with the distance.
+  float far_reach(float reach, float from) const {
+    if (sizing == nullptr) return reach * from;
+    const float most = reach * longest_edge / kMaxEdge;
     reach *= stretch;
-    return sizing == nullptr ? reach : reach / (1 - reach * sizing->field.slope());
+    const float slope = reach * sizing->field.slope();
+    return slope < 1 ? std::min(most, reach * from / (1 - slope)) : most;
   }
   // Whether every size is delta.
   bool uniform() const {
@@ -218,8 +228,9 @@ class Mesh {
   RingView view_;
 };
 
-// The longest edge, as a part of what (2) allows at the sizes of its ends.
-float longest_stretch(const Mesh& mesh);
+// Of an adaptive mesh that may not be of its sizes yet: sets stretch and longest_edge to what its
+// edges are.
+void measure_edges(Mesh& mesh);
 
 template <typename A, typename B, typename Visit>
 void Mesh::visit_streams(A& a, B& b, const Visit& visit) {

@@ -193,9 +193,10 @@ Status Recovery::adapt() {
   evolution_.notify("refinement");
   if (mesh_.sizing != nullptr) {
     // To the sizes of this level, before anything moves.
-    mesh_.stretch = std::max(kSizedStretch, longest_stretch(mesh_));
+    measure_edges(mesh_);
     evolution_.check_all(record().seconds, record().operations);
     mesh_.stretch = kSizedStretch;
+    mesh_.longest_edge = mesh_.longest_sized_edge();
     renumber();
     evolution_.restart();
   }
@@ -218,6 +219,7 @@ Status Recovery::build_sizing() {
   }
   mesh_.sizing = &sizing_;
   mesh_.stretch = kSizedStretch;
+  mesh_.longest_edge = mesh_.longest_sized_edge();
   return {};
 }
 
@@ -226,7 +228,9 @@ void Recovery::start_round(int number, bool late) {
   round_.number = number;
   round_.late = late;
   estimate_.start_round();
-  const double room = most_vertices(pyramid_, level_, spec_.pad_voxels, spec_.anisotropy);
+  double room = most_vertices(pyramid_, level_, spec_.pad_voxels, spec_.anisotropy);
+  // Of a surface, not of what fills the image.
+  if (spec_.sizes) room *= std::max(1.0, 1 / (spec_.sizes->finest * spec_.sizes->finest));
   // Starts may lie outside.
   round_.most_vertices = std::max(static_cast<int64_t>(std::min(room, 1.0 * mesh_.most_vertices)),
                                   int64_t{2} * mesh_.vertex_count());

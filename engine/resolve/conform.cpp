@@ -95,7 +95,7 @@ void settle(Mesh& mesh, const Executor& executor, Detection& detection, Resoluti
   mesh.renumber(morton_order(mesh, executor), executor);
   detection.restart();
   resolution.restart();
-  if (mesh.sizing != nullptr) mesh.stretch = std::max(kSizedStretch, longest_stretch(mesh));
+  if (mesh.sizing != nullptr) measure_edges(mesh);
   for (int pass = 0; pass < kConformPasses; ++pass) {
     const int64_t before = counts.transformations();
     // Nothing freezes here: the passes end where one changes nothing, or there are too many.

@@ -172,6 +172,10 @@ def choose_options(draw, values, finest):
     for flag in ("--no-late-bubbles", "--no-sleeping", "--each-level"):
         maybe(0.1, flag)
     maybe(0.3, "--space", draw.choice(["ras", "voxel"]))
+    if draw.random() < 0.4:
+        options += ["--mesh", "adaptive"]
+        maybe(0.4, "--tolerance", f"{finest * log_uniform(draw, 1e-3, 1):.6g}")
+        maybe(0.4, f"--edge-range={finest * log_uniform(draw, 0.2, 1):.6g},{finest * log_uniform(draw, 1, 9):.6g}")
     return options
 
 

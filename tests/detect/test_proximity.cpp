@@ -59,6 +59,7 @@ TEST_CASE("sheets between which the image has what the surface says stay apart",
   Mesh mesh;
   samples::fill_mesh(mesh, spheres(0.25), kDelta);
   mesh.sizing = &other.sizing;
+  plc::measure_edges(mesh);
   CHECK(candidates_of(mesh).empty());
   mesh.sizing = &object.sizing;
   CHECK(candidates_of(mesh).size() == 1);
@@ -68,6 +69,7 @@ TEST_CASE("sheets between which the image has what the surface says stay apart",
   Mesh wall;
   samples::fill_mesh(wall, soup, kDelta);
   wall.sizing = &object.sizing;
+  plc::measure_edges(wall);
   CHECK(candidates_of(wall).empty());
   wall.sizing = &other.sizing;
   CHECK(candidates_of(wall).size() == 66);

@@ -11,6 +11,7 @@
 #include "engine/resolve/refinement.h"
 #include "pyramid/memory.h"
 #include "tests/samples/kernel_fixtures.h"
+#include "tests/samples/sample_sizing.h"
 #include "tests/samples/sample_surfaces.h"
 #include "tests/samples/sample_volumes.h"
 
@@ -477,4 +478,21 @@ TEST_CASE("vertices that are created at once are as those created one by one", "
     CHECK(many.calm[v] == one.calm[v]);
     CHECK(plc::squared_distance(many.at(v), one.at(v)) == 0);
   }
+}
+
+TEST_CASE("what is near where sizes grow is looked for as far as they may have grown", "[mesh]") {
+  Mesh mesh;
+  samples::fill_mesh(mesh, samples::octahedron(), 1);
+  CHECK(mesh.far_reach(2, 1.5F) == 3);  // uniform
+  const samples::FullImage image(true);
+  mesh.sizing = &image.sizing;
+  plc::measure_edges(mesh);
+  CHECK(mesh.stretch == plc::kSizedStretch);
+  // Edges of sqrt 2, of sizes of a quarter delta, may be longer than (2) has it.
+  for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.position[v].w = -0.75F;
+  plc::measure_edges(mesh);
+  CHECK(mesh.stretch == Approx(std::sqrt(2.0) / (2.5 * 0.25)));
+  CHECK(mesh.longest_edge == Approx(2.5 * 1.05));
+  CHECK(mesh.far_reach(2, 0.1F) == Approx(2 * 0.1 * std::sqrt(2.0) / (2.5 * 0.25)));
+  CHECK(mesh.far_reach(2, 100) == Approx(2 * 1.05));  // no edge is longer
 }
