@@ -22,8 +22,6 @@ constexpr size_t kRow = kSide, kPlane = kRow * kSide, kVolume = kPlane * kSide;
 constexpr double kWindow = 1.25;
 constexpr std::array<float, 3> kNarrow{0.25F, 0.5F, 0.25F};
 constexpr std::array<float, 5> kWide{0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
-// Edges of a mesh of a size, in the mean.
-constexpr double kMeanEdge = 1.5;
 // Facets of edges e lie off a surface of curvature k by about k e^2 / 16 in the mean, once the mean
 // of their distances along the normal is 0.
 constexpr double kOff = 1.0 / 16;

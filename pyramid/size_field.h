@@ -14,6 +14,9 @@
 
 namespace plc {
 
+// Edges of a mesh are so many sizes long, in the mean.
+inline constexpr double kMeanEdge = 1.5;
+
 // What sizes are asked for, in delta of the level's uniform mesh: there every size is 1.
 struct SizeSpec {
   double finest = 0.5, coarsest = 4;  // within [1/32, 255/32]

@@ -30,8 +30,6 @@ inline constexpr float kReach = 16777216;
 // Edges are longer than (2) has them by no more than this, where a vertex has gone to a place of
 // another size since it was looked at.
 inline constexpr float kSizedStretch = 1.05F;
-// Edges of a mesh, in delta, in the mean.
-inline constexpr double kMeanEdge = 1.5;
 // alpha_c of an adaptive mesh, as a part of the model's: what (5) smooths of a thin part pulls its
 // rim in. Iguana (adaptive, tolerance 0.05 delta) is 0.61 voxels from its iso-surface at 1, 0.24 at
 // 0.5, 0.17 at 0.25, 0.14 at 0.125.

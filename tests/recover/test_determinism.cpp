@@ -126,7 +126,7 @@ Run forces_run() {
   return run;
 }
 
-// Sizes from a third to three times delta.
+// Sizes from a half to four times delta.
 Run adaptive_run() {
   Run run = large_run();
   run.name = "adaptive";
