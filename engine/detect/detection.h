@@ -26,8 +26,12 @@ class Detection {
   void list_all();
   // Enters them where they are now.
   void update_hash();
-  // What is around them.
-  void search() { surroundings_.search(due(), hash_); }
+  // What is around them; and, for the motion guard, around vertices that may not be due but are
+  // newly folded.
+  void search(const Vector<uint32_t>& folded) {
+    surroundings_.search(due(), hash_);
+    surroundings_.search_folded(folded, hash_);
+  }
 
   // The three for the constraints of all vertices only: nothing has moved, or will be asked of the
   // motion guard.

@@ -4,13 +4,16 @@
 // kRiskReach of the other's: an edge of one pierces the other, and is at most half its length from
 // the piercing point, as a corner of the pierced face is at most 1/sqrt 3 of its longest edge.
 // Parts whose normals agree by more than kRiskDot are one sheet, or the outer two of three sheets,
-// and then the middle one is at risk with both. So a vertex v is at risk when
+// and then the middle one is at risk with both: if it is so large that its vertices' normals show
+// it. Where it is a few faces that are turned over, the vertices around them have no normal to
+// compare, and all that is near counts as turned against them. So a vertex v is at risk when
 //   - a face around it is turned by more than kRiskDot against its normal: looked at after every
 //     movement, around all that may have moved (a thin face turns over when it hardly moves), or
-//   - for a vertex w within kRiskReach that is no neighbour and has a normal turned by more than
+//   - for a vertex w within kRiskReach that is no neighbour and is turned against it by more than
 //     that, a face of v and one of w that have no common vertex are not kRiskGap apart; w is then
-//     at risk, too. Like the constraints, this is looked at when a vertex is due: of two vertices
-//     the later look counts, and since then neither has moved by more than kCheckPath.
+//     at risk, too. Like the constraints, this is looked at when a vertex is due, and when a face
+//     around it has turned over: of two vertices the later look counts, and since then neither has
+//     moved by more than kCheckPath.
 #pragma once
 #include <array>
 

@@ -46,14 +46,22 @@ class ClosedRing {
 }  // namespace
 
 void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash) {
-  search(due, hash, Wanted::kNearAndRisk);
+  const size_t tasks = search(due, hash, Wanted::kNearAndRisk);
+  gather_near(tasks);
+  at_risk_.clear();
+  gather_at_risk(tasks);
+}
+
+void Surroundings::search_folded(const Vector<uint32_t>& folded, const SpatialHash& hash) {
+  if (!folded.empty()) gather_at_risk(search(folded, hash, Wanted::kNearAndRisk));
 }
 
 void Surroundings::search_near(const Vector<uint32_t>& all, const SpatialHash& hash) {
-  search(all, hash, Wanted::kNear);
+  gather_near(search(all, hash, Wanted::kNear));
+  at_risk_.clear();
 }
 
-void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted) {
+size_t Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted) {
   assert(std::is_sorted(due.begin(), due.end()));
   assert(due.empty() || due.back() < mesh_.slots());
   const float reach = wanted == Wanted::kNear ? kMinApart : kRiskReach;
@@ -77,12 +85,21 @@ void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash, 
       i += count;
     }
   });
-  too_near_.clear();
-  at_risk_.clear();
+  return tasks;
+}
+
+void Surroundings::gather_at_risk(size_t tasks) {
   for (size_t index = 0; index < tasks; ++index) {
-    const Task& task = tasks_[index];
-    too_near_.insert(too_near_.end(), task.too_near.begin(), task.too_near.end());
-    at_risk_.insert(at_risk_.end(), task.at_risk.begin(), task.at_risk.end());
+    const Vector<uint32_t>& found = tasks_[index].at_risk;
+    at_risk_.insert(at_risk_.end(), found.begin(), found.end());
+  }
+}
+
+void Surroundings::gather_near(size_t tasks) {
+  too_near_.clear();
+  for (size_t index = 0; index < tasks; ++index) {
+    const Vector<VertexPair>& found = tasks_[index].too_near;
+    too_near_.insert(too_near_.end(), found.begin(), found.end());
   }
   parallel_sort(too_near_, executor_);
   too_near_.erase(std::unique(too_near_.begin(), too_near_.end()), too_near_.end());
@@ -108,6 +125,13 @@ size_t Surroundings::group_size(const uint32_t* due, size_t count, Vec3& low, Ve
   return size;
 }
 
+// Against which other vertices are turned or not. Where the surface folds, the vertex's own normal
+// does not tell of the faces that are turned over: without one all that is near counts as turned,
+// as the cosine of 0 is below kRiskDot.
+Vec3 Surroundings::sheet_normal(uint32_t v) const {
+  return (mesh_.risk[v] & Mesh::kFoldRisk) != 0 ? Vec3{} : mesh_.normal.at(v);
+}
+
 // The places of what is around, and the normals where they are wanted.
 void Surroundings::fetch(Wanted wanted, Scratch& scratch) const {
   const size_t count = scratch.around.ids.size();
@@ -121,7 +145,7 @@ void Surroundings::fetch(Wanted wanted, Scratch& scratch) const {
   }
   if (wanted == Wanted::kNear) return;
   for (size_t i = 0; i < count; ++i) {
-    const Vec3 n = mesh_.normal.at(scratch.around.ids[i]);
+    const Vec3 n = sheet_normal(scratch.around.ids[i]);
     nx[i] = n.x, ny[i] = n.y, nz[i] = n.z;
   }
 }
@@ -142,7 +166,7 @@ void Surroundings::search_group(const uint32_t* due, size_t count, Wanted wanted
     const float near = mesh_.far_reach(kMinApart, mesh_.size(due[i]));
     const float far = near_only ? near : mesh_.far_reach(kRiskReach, mesh_.size(due[i]));
     const Vec3 p = mesh_.at(due[i]);
-    const Vec3 n = near_only ? Vec3{} : mesh_.normal.at(due[i]);
+    const Vec3 n = near_only ? Vec3{} : sheet_normal(due[i]);
     const uint32_t hits = kernels::near_or_turned(
         simd_, view,
         {p.x, p.y, p.z, n.x, n.y, n.z, near * near, far * far, near_only ? kNone : kRiskDot},
@@ -171,7 +195,7 @@ void Surroundings::list_near(uint32_t v, uint32_t hits, const Scratch& scratch, 
 }
 
 void Surroundings::judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task) const {
-  const Vec3 p = mesh_.at(v), n = mesh_.normal.at(v);
+  const Vec3 p = mesh_.at(v), n = sheet_normal(v);
   const ClosedRing ring(mesh_, v);
   scratch.turned.clear();
   const size_t most = task.too_near.size() + kMostNear;
@@ -182,7 +206,7 @@ void Surroundings::judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task
       task.too_near.push_back({std::min(v, w), std::max(v, w)});
     }
     const float far = kRiskReach * mesh_.stretch * std::max(mesh_.size(v), mesh_.size(w));
-    if (dot(n, mesh_.normal.at(w)) <= kRiskDot && squared_distance(p, mesh_.at(w)) <= far * far)
+    if (dot(n, sheet_normal(w)) <= kRiskDot && squared_distance(p, mesh_.at(w)) <= far * far)
       scratch.turned.push_back(w);
   }
   if (!scratch.turned.empty()) list_risk(v, scratch.turned, task);

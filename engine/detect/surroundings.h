@@ -29,8 +29,12 @@ class Surroundings {
   Surroundings(const Mesh& mesh, const Executor& executor, SimdTarget simd)
       : mesh_(mesh), executor_(executor), simd_(simd) {}
 
-  // due: ascending. The hash holds every living vertex. Normals are those of mesh.normal.
+  // due: ascending. The hash holds every living vertex. Normals are those of mesh.normal; a vertex
+  // that the surface folds around (Mesh::kFoldRisk) has none.
   void search(const Vector<uint32_t>& due, const SpatialHash& hash);
+  // Only the risk, of vertices around which the surface folds since the last movement: what is at
+  // risk with them is added to what search() has found. folded: ascending.
+  void search_folded(const Vector<uint32_t>& folded, const SpatialHash& hash);
   // Only what is too near, for constraint (3), around all living vertices: a smaller box, no
   // normals, and each pair is seen from one side.
   void search_near(const Vector<uint32_t>& all, const SpatialHash& hash);
@@ -57,7 +61,11 @@ class Surroundings {
     Vector<uint32_t> turned;
   };
   enum class Wanted { kNear, kNearAndRisk };
-  void search(const Vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted);
+  // Fills the tasks; returns how many.
+  size_t search(const Vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted);
+  void gather_near(size_t tasks);
+  void gather_at_risk(size_t tasks);
+  Vec3 sheet_normal(uint32_t v) const;
   void fetch(Wanted wanted, Scratch& scratch) const;
   void search_group(const uint32_t* due, size_t count, Wanted wanted, Scratch& scratch,
                     Task& task) const;

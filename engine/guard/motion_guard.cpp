@@ -16,17 +16,26 @@ void MotionGuard::find_folds(const Vector<uint32_t>& blocks) {
   assert(blocks.empty() || blocks.back() < mesh_.padded() / kRingLanes);
   folds_.resize_uninitialized(mesh_.padded());
   const Streams3& n = mesh_.normal;
-  run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {
+  const size_t tasks = block_count(blocks.size(), kTaskBlocks);
+  found_.resize(std::max(found_.size(), tasks));
+  run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {
+    Vector<uint32_t>& found = found_[task];
+    found.clear();
     const Blocks part = Blocks::of(blocks.data(), blocks.size(), begin, end);
     kernels::turned_faces(simd_, mesh_.rings(), mesh_.position.data(), part, n.x.data(), n.y.data(),
                           n.z.data(), kRiskDot, folds_.data());
     for (size_t i = 0; i < part.count; ++i) {
       for (uint32_t v = part.begin(i); v < part.begin(i) + kRingLanes; ++v) {
+        if (folds_[v] != 0 && (mesh_.risk[v] & Mesh::kFoldRisk) == 0) found.push_back(v);
         const uint32_t near = mesh_.risk[v] & Mesh::kNearRisk;
         mesh_.risk[v] = static_cast<uint8_t>(near | uint32_t{folds_[v]} * Mesh::kFoldRisk);
       }
     }
   });
+  newly_folded_.clear();
+  for (size_t task = 0; task < tasks; ++task) {
+    newly_folded_.insert(newly_folded_.end(), found_[task].begin(), found_[task].end());
+  }
 }
 
 void MotionGuard::assess(const Vector<uint32_t>& due, const Vector<uint32_t>& at_risk) {

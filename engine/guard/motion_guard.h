@@ -23,6 +23,8 @@ class MotionGuard {
   // blocks: of kRingLanes vertices, with all that have moved and all their neighbours. Finds where
   // the surface folds now, against the normals of the movement's start.
   void find_folds(const Vector<uint32_t>& blocks);
+  // The vertices around which it did not fold before that; ascending.
+  const Vector<uint32_t>& newly_folded() const { return newly_folded_; }
   // due: the vertices whose risk has been looked at anew; at_risk: those of all that it was found
   // for (Surroundings). The others keep theirs.
   void assess(const Vector<uint32_t>& due, const Vector<uint32_t>& at_risk);
@@ -38,6 +40,8 @@ class MotionGuard {
   const Executor& executor_;
   SimdTarget simd_;
   Buffer<uint8_t> folds_;
+  Vector<Vector<uint32_t>> found_;  // newly folded, by task
+  Vector<uint32_t> newly_folded_;
   MeetingSearch search_;
 };
 

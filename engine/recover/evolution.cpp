@@ -77,8 +77,9 @@ void Evolution::append_topology(Seconds& seconds, OperationCounts& counts,
     counts.checks += static_cast<int64_t>(detection_.due().size());
   });
   add("hash", kDue | kPositions, kHash, [this] { detection_.update_hash(); });
-  add("surroundings", kDue | kHash | kSurface, kSurroundings, [this] { detection_.search(); });
   add("folds", kAwake | kSurface, kFolds, [this] { guard_.find_folds(sleep_.awake_and_rim()); });
+  add("surroundings", kDue | kHash | kSurface | kFolds, kSurroundings,
+      [this] { detection_.search(guard_.newly_folded()); });
   add("risk", kDue | kSurroundings | kFolds, kRisk,
       [this] { guard_.assess(detection_.due(), detection_.surroundings().at_risk()); });
   add("motion guard", kRisk | kStages | kSurface,

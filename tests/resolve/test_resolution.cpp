@@ -44,7 +44,7 @@ struct Resolver {
  private:
   const plc::Vector<uint32_t>& search() {
     detection.update_hash();
-    detection.search();
+    detection.search({});
     return detection.due();
   }
 };
