@@ -7,9 +7,9 @@
 namespace plc {
 
 // In units of work, not of time: movements of single vertices, and transformations as so many. What
-// is left of a round of iterations (recovery.h) is seen in its energy, which falls like about the
-// same power of the iterations on every image that was tried; the finer levels cost more than the
-// one before them by a constant factor. Everything is counted, so that the estimate is the same for
+// is left of a round of iterations (recovery.h) is seen in its energy, which falls like about one
+// over the iterations on every image that was tried; the finer levels cost more than the one before
+// them by a constant factor. Everything is counted, so that the estimate is the same for
 // any number of threads.
 class ProgressEstimate {
  public:
@@ -38,11 +38,12 @@ class ProgressEstimate {
   }
 
  private:
+  bool first_round() const { return before_ == 0; }
   void observe(const OperationCounts& level, double energy, double vertices);
   double round_left(const Ahead& ahead) const;
 
   int iterations_ = 0;       // of the round
-  int before_ = 0;           // of the round before
+  int before_ = 0;           // of the round before; 0: there was none
   int64_t moves_ = 0;        // of the level, up to the last iteration
   int64_t operations_ = 0;   // ...
   double earlier_work_ = 0;  // of the levels before
