@@ -18,6 +18,7 @@ namespace HWY_NAMESPACE {
 #if PLC_SCALAR_TARGET
 using scalar::guided_move;
 using scalar::guided_stage;
+using scalar::sized_iso_force;
 #else
 
 // Of a mesh of another size than delta.
@@ -36,6 +37,35 @@ HWY_INLINE Floats3 sampled_place(const SurfaceForces& f, uint32_t i) {
   if constexpr (!kSized) return p;
   const Floats3 n = load3(f.normal, i);
   return p + n * hn::Mul(hn::Set(FloatTag(), f.facets), dot(load_packed(f.laplacian + i), n));
+}
+
+// Of the image, in the middles of a vertex's edges.
+template <class Voxel>
+struct StarSum {
+  const ImageView& image;
+  Floats3 centre;
+  Floats sum = hn::Zero(FloatTag());
+  HWY_INLINE void add(FloatMask has_slot, const Floats3& neighbour) {
+    const Floats3 middle = (centre + neighbour) * hn::Set(FloatTag(), 0.5F);
+    sum = hn::Add(sum, hn::IfThenElseZero(has_slot, sample<Voxel>(image, middle)));
+  }
+};
+
+// The image's value for the vertices i .. i + kLanes - 1.
+template <class Voxel, bool kSized>
+HWY_INLINE Floats image_value_at(const SurfaceForces& f, const Float4* sizes, uint32_t i) {
+  const Floats own = sample<Voxel>(f.image, sampled_place<kSized>(f, i));
+  if constexpr (!kSized) return own;
+  const FloatTag d;
+  const Floats valence = load_valence(f.ring, i);
+  const FloatMask in_columns = hn::Not(hn::Gt(valence, hn::Set(d, static_cast<float>(kRingSlots))));
+  const Floats above = hn::Max(load_packed4(sizes + i).w, hn::Zero(d));
+  const Floats part = hn::IfThenElseZero(hn::And(in_columns, hn::Gt(valence, hn::Zero(d))),
+                                         hn::Min(above, hn::Set(d, f.star)));
+  if (hn::AllFalse(d, hn::Gt(part, hn::Zero(d)))) return own;
+  StarSum<Voxel> star{f.image, load_packed(f.position + i)};
+  walk_ring(f.ring, f.position, i, valence, star);
+  return lerp(own, hn::Mul(star.sum, inverse_valence(valence)), part);
 }
 
 // (5) and (7) of the vertices i .. i + kLanes - 1.
@@ -118,7 +148,7 @@ HWY_INLINE void visit_blocks(const SurfaceForces& f, const Rk4Streams& s, const 
         }
         const uint32_t begin = blocks.begin(b);
         for (uint32_t i = 0; i < kRingLanes; i += kLanes) {
-          hn::Store(sample<Voxel>(f.image, sampled_place<kSized>(f, begin + i)), FloatTag(),
+          hn::Store(image_value_at<Voxel, kSized>(f, s.position, begin + i), FloatTag(),
                     values + (b - first) * kRingLanes + i);
         }
       }
@@ -179,6 +209,18 @@ Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& f
                       : move_blocks<false>(coefficients, forces, streams, bound, ends, blocks);
 }
 
+void sized_iso_force(const SurfaceForces& f, const Float4* sizes, uint32_t begin, uint32_t end,
+                     const Float3s& force) {
+  const FloatTag d;
+  with_voxel_type(f.image.form.type, [&](auto voxel) HWY_ATTR {
+    for (uint32_t i = begin; i < end; i += kLanes) {
+      const Floats value = image_value_at<decltype(voxel), true>(f, sizes, i);
+      const Floats push = hn::Mul(hn::Set(d, f.attraction), hn::Sub(hn::Set(d, f.iso), value));
+      store3(load3(force, i) + load3(f.normal, i) * push, force, i);
+    }
+  });
+}
+
 #endif  // PLC_SCALAR_TARGET
 
 }  // namespace HWY_NAMESPACE
@@ -190,6 +232,7 @@ namespace plc::kernels {
 
 HWY_EXPORT(guided_stage);
 HWY_EXPORT(guided_move);
+HWY_EXPORT(sized_iso_force);
 
 void guided_stage(SimdTarget simd, int stage, const Rk4Coefficients& coefficients,
                   const SurfaceForces& forces, const Rk4Streams& streams, const Blocks& blocks) {
@@ -200,6 +243,11 @@ Movement guided_move(SimdTarget simd, const Rk4Coefficients& coefficients,
                      const SurfaceForces& forces, const Rk4Streams& streams, const MoveBound& bound,
                      const MoveStreams& ends, const Blocks& blocks) {
   return PLC_DISPATCH(simd, guided_move)(coefficients, forces, streams, bound, ends, blocks);
+}
+
+void sized_iso_force(SimdTarget simd, const SurfaceForces& forces, const Float4* sizes,
+                     uint32_t begin, uint32_t end, const Float3s& force) {
+  PLC_DISPATCH(simd, sized_iso_force)(forces, sizes, begin, end, force);
 }
 
 }  // namespace plc::kernels

@@ -22,9 +22,12 @@ struct SurfaceForces {
   float attraction;        // delta alpha_I
   float iso;
   // An adaptive mesh: alpha_c is divided by the fourth power of sizes above delta, which keeps the
-  // length that (5) smooths over, and the image is sampled at x + facets (L . n) n.
+  // length that (5) smooths over. The image's value at a vertex is that at x + facets (L . n) n; of
+  // one whose size is above delta the mean over the middles of its edges has the part min(size
+  // above delta / delta, star) in it, where the vertex has no more than kRingSlots neighbours.
   bool sized = false;
   float facets = 0;
+  float star = 0;
 };
 
 // Stages 0..2, and stage 3 where something else comes before the move.
@@ -36,5 +39,10 @@ void guided_stage(SimdTarget simd, int stage, const Rk4Coefficients& coefficient
 Movement guided_move(SimdTarget simd, const Rk4Coefficients& coefficients,
                      const SurfaceForces& forces, const Rk4Streams& streams, const MoveBound& bound,
                      const MoveStreams& ends, const Blocks& blocks);
+
+// Of forces with `sized`: f += attraction (iso - value) n, (7) alone. sizes: records whose w is the
+// size above delta. begin and end are multiples of kRingLanes.
+void sized_iso_force(SimdTarget simd, const SurfaceForces& forces, const Float4* sizes,
+                     uint32_t begin, uint32_t end, const Float3s& force);
 
 }  // namespace plc::kernels

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <utility>
 
 #include "kernels/image_value.h"
 #include "pyramid/memory.h"
@@ -25,6 +26,13 @@ constexpr std::array<float, 5> kWide{0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
 // Facets of edges e lie off a surface of curvature k by about k e^2 / 16 in the mean, once the mean
 // of their distances along the normal is 0.
 constexpr double kOff = 1.0 / 16;
+// Second differences along x of those along y of those along z see nothing of most shapes, and of
+// noise of variance 1 have a variance of 6^3; half of the values of a normal distribution are
+// nearer to 0 than this many standard deviations.
+constexpr std::array<float, 3> kSecond{1, -2, 1};
+constexpr double kSeenOfNoise = 14.697, kMedian = 0.6745;
+// Of noise of variance 1, what is left in the difference of two smoothed voxels with one between.
+constexpr double kLeftOfNoise = 0.625 * 0.375 * 0.375;
 
 template <size_t kTaps>
 void convolve(const Vector<float>& from, size_t stride, const std::array<float, kTaps>& taps,
@@ -49,6 +57,11 @@ void smooth(Vector<float>& values, const std::array<float, kTaps>& taps, Vector<
 // The structure tensor of a part of the image: xx, yy, zz, xy, xz, yz.
 struct Tensor {
   std::array<float, 6> j{};
+  float weight = 0;  // of its gradients, summed
+  // Takes away what noise has put there: along each axis its variance, of gradients.
+  void clear_of(const std::array<float, 3>& variance) {
+    for (size_t a = 0; a < 3; ++a) j[a] = std::max(0.0F, j[a] - weight * variance[a]);
+  }
   // The part of the turning across the first eigenvector in that along it, r = (l2 + l3) / l1, from
   // the invariants of the tensor; at most 1.
   double turning() const {
@@ -66,7 +79,7 @@ struct Tensor {
 class Tile {
  public:
   Tile() {
-    for (auto* v : {&value_, &scratch_}) v->resize(kVolume);
+    for (auto* v : {&value_, &scratch_, &weight_}) v->resize(kVolume);
     for (auto& t : tensor_) t.resize(kVolume);
   }
 
@@ -75,6 +88,11 @@ class Tile {
     const auto within = [&](int32_t i, size_t a) {
       return std::clamp(first[a] - kHalo + i, 0, image.dims[a] - 1);
     };
+    for (size_t a = 0; a < 3; ++a) {
+      const int32_t begin = image.form.pad - first[a] + kHalo;
+      stored_[a] = {std::max(begin, 0),
+                    std::min(begin + image.dims[a] - 2 * image.form.pad, kSide)};
+    }
     float* to = value_.data();
     with_voxel_type(image.form.type, [&](auto voxel) {
       for (int32_t z = 0; z < kSide; ++z) {
@@ -102,10 +120,34 @@ class Tile {
     return low <= iso && high >= iso;
   }
 
+  // Of a voxel of the image, in the values' unit; 0 where more than half of them are even.
+  double noise() {
+    convolve(value_, 1, kSecond, tensor_[0]);
+    convolve(tensor_[0], kRow, kSecond, scratch_);
+    convolve(scratch_, kPlane, kSecond, tensor_[0]);
+    magnitudes_.clear();
+    // What is repeated beyond the image's border has no noise.
+    const auto& [xs, ys, zs] = stored_;
+    for (int32_t z = zs.first + 1; z < zs.second - 1; ++z) {
+      for (int32_t y = ys.first + 1; y < ys.second - 1; ++y) {
+        const float* row =
+            &tensor_[0][static_cast<size_t>(z) * kPlane + static_cast<size_t>(y) * kRow];
+        for (int32_t x = xs.first + 1; x < xs.second - 1; ++x) {
+          magnitudes_.push_back(std::abs(row[x]));
+        }
+      }
+    }
+    if (magnitudes_.empty()) return 0;
+    const auto middle = magnitudes_.begin() + static_cast<std::ptrdiff_t>(magnitudes_.size() / 2);
+    std::nth_element(magnitudes_.begin(), middle, magnitudes_.end());
+    return static_cast<double>(*middle) / (kMedian * kSeenOfNoise);
+  }
+
   // half: of a difference over two voxels, per delta.
   void find_tensors(const std::array<float, 3>& half, float iso) {
     smooth(value_, kNarrow, scratch_);
     for (auto& t : tensor_) std::fill(t.begin(), t.end(), 0.0F);
+    std::fill(weight_.begin(), weight_.end(), 0.0F);
     const float* v = value_.data();
     constexpr size_t kMargin = kPlane + kRow + 1;
     for (size_t i = kMargin; i < kVolume - kMargin; ++i) {
@@ -123,8 +165,10 @@ class Tile {
       tensor_[3][i] = weight * x * y;
       tensor_[4][i] = weight * x * z;
       tensor_[5][i] = weight * y * z;
+      weight_[i] = weight;
     }
     for (auto& t : tensor_) smooth(t, kWide, scratch_);
+    smooth(weight_, kWide, scratch_);
   }
 
   // Over the voxels of a cell.
@@ -134,17 +178,18 @@ class Tile {
     };
     const size_t first = voxel(z) * kPlane + voxel(y) * kRow + voxel(x);
     Tensor sum;
-    for (size_t k = 0; k < 6; ++k) {
-      for (const size_t at : {first, first + kRow, first + kPlane, first + kPlane + kRow}) {
-        sum.j[k] += tensor_[k][at] + tensor_[k][at + 1];
-      }
+    for (const size_t at : {first, first + kRow, first + kPlane, first + kPlane + kRow}) {
+      for (size_t k = 0; k < 6; ++k) sum.j[k] += tensor_[k][at] + tensor_[k][at + 1];
+      sum.weight += weight_[at] + weight_[at + 1];
     }
     return sum;
   }
 
  private:
-  Vector<float> value_, scratch_;
+  std::array<std::pair<int32_t, int32_t>, 3> stored_{};  // begin and end of what the image holds
+  Vector<float> value_, scratch_, magnitudes_;
   std::array<Vector<float>, 6> tensor_;
+  Vector<float> weight_;
 };
 
 uint8_t code(double size) {
@@ -174,22 +219,39 @@ class SizeField::Builder {
 
   void run(const Executor& executor) {
     std::fill(field_.sizes_.begin(), field_.sizes_.end(), coarsest_);
-    executor.run(static_cast<size_t>(tiles_[2]), [&](size_t z) {
+    Vector<Vector<float>> noises(static_cast<size_t>(tiles_[2]));
+    executor.run(noises.size(), [&](size_t z) {
       Tile tile;
       for (int32_t y = 0; y < tiles_[1]; ++y) {
         for (int32_t x = 0; x < tiles_[0]; ++x) {
           const std::array<int32_t, 3> cell{x * kTile, y * kTile, static_cast<int32_t>(z) * kTile};
           tile.read(image_, {cell[0] * kCell, cell[1] * kCell, cell[2] * kCell});
           if (!tile.crosses(iso_)) continue;
+          const double noise = tile.noise();
           tile.find_tensors(half_, iso_);
-          fill(tile, cell);
+          fill(tile, cell, noise, noises[z]);
         }
       }
     });
+    for (const Vector<float>& of_layer : noises) {
+      noises_.insert(noises_.end(), of_layer.begin(), of_layer.end());
+    }
+    if (noises_.empty()) return;
+    const auto middle = noises_.begin() + static_cast<std::ptrdiff_t>(noises_.size() / 2);
+    std::nth_element(noises_.begin(), middle, noises_.end());
+    field_.noise_ = *middle;
   }
 
  private:
-  void fill(const Tile& tile, const std::array<int32_t, 3>& first) {
+  // noise: of the tile's voxels. Appends what it moves the surface by.
+  void fill(const Tile& tile, const std::array<int32_t, 3>& first, double noise,
+            Vector<float>& noises) {
+    std::array<float, 3> variance{};
+    for (size_t a = 0; a < 3; ++a) {
+      const double half = static_cast<double>(half_[a]);
+      variance[a] = static_cast<float>(kLeftOfNoise * half * half * noise * noise);
+    }
+    Tensor all;
     const auto& cells = field_.cells_;
     const auto row = static_cast<size_t>(cells[0]), plane = row * static_cast<size_t>(cells[1]);
     for (int32_t z = 0; z < std::min(kTile, cells[2] - first[2]); ++z) {
@@ -198,10 +260,18 @@ class SizeField::Builder {
             &field_.sizes_[static_cast<size_t>(first[2] + z) * plane +
                            static_cast<size_t>(first[1] + y) * row + static_cast<size_t>(first[0])];
         for (int32_t x = 0; x < std::min(kTile, cells[0] - first[0]); ++x) {
-          to[x] = size(tile.tensor(x, y, z));
+          Tensor tensor = tile.tensor(x, y, z);
+          tensor.clear_of(variance);
+          to[x] = size(tensor);
+          all.weight += tensor.weight;
+          for (size_t a = 0; a < 3; ++a) all.j[a] += tensor.j[a];
         }
       }
     }
+    const double squared = static_cast<double>(all.j[0] + all.j[1] + all.j[2]);
+    if (!(squared > 0)) return;
+    noises.push_back(
+        static_cast<float>(noise * std::sqrt(static_cast<double>(all.weight) / squared)));
   }
 
   uint8_t size(const Tensor& tensor) const {
@@ -217,6 +287,7 @@ class SizeField::Builder {
   std::array<int32_t, 3> tiles_{};
   std::array<float, 3> half_{};
   double window_ = 1, factor_ = 1;
+  Vector<float> noises_;
 };
 
 Status SizeField::build(const ImageView& image, float iso, double delta, const SizeSpec& spec,
@@ -231,6 +302,7 @@ Status SizeField::build(const ImageView& image, float iso, double delta, const S
     side = std::min(side, kCell / static_cast<double>(image.scale[a]) / delta);
   }
   slope_ = static_cast<float>(spec.slope);
+  noise_ = 0;
   finest_ = static_cast<float>(code(spec.finest)) * kStep;
   coarsest_ = static_cast<float>(code(spec.coarsest)) * kStep;
   try {

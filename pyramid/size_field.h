@@ -46,6 +46,9 @@ class SizeField {
   // The smallest and the largest size asked for, in delta.
   float finest() const { return finest_; }
   float coarsest() const { return coarsest_; }
+  // What the image's noise moves its iso-surface by, standard deviation in delta: that of a voxel over
+  // the gradient there, the median over where the surface passes. 0 where there is none.
+  float noise() const { return noise_; }
   // No size is larger than another by more than this times their distance.
   float slope() const { return slope_; }
 
@@ -56,7 +59,7 @@ class SizeField {
 
   std::array<int32_t, 3> cells_{0, 0, 0};
   std::array<float, 3> scale_{1, 1, 1}, offset_{0, 0, 0};  // mesh space to cells
-  float slope_ = 0, finest_ = 1, coarsest_ = 1;
+  float slope_ = 0, finest_ = 1, coarsest_ = 1, noise_ = 0;
   Buffer<uint8_t> sizes_;
 };
 

@@ -70,10 +70,7 @@ void Dynamics::resize(const Guide& guide) {
     b.reserve(room);
     b.resize(mesh_.position.size());
   }
-  if (!only_surface_forces(guide)) {
-    force_.resize(n);
-    if (mesh_.sizing != nullptr) sampled_.resize(n);
-  }
+  if (!only_surface_forces(guide)) force_.resize(n);
   if (!stretched(guide.metric)) return;
   for (Streams3* s : {&metric_normal_, &metric_step_}) s->resize(n);
 }
@@ -291,23 +288,19 @@ void Dynamics::gather_forces(int stage, const Guide& guide, uint32_t begin, uint
   for (uint32_t v = begin; v < end; ++v) force_.set(v, force_.at(v) + user_force_.at(v));
 }
 
+// alpha_c of the mesh. That of an adaptive one is as large as the image's noise asks for.
+float Dynamics::curvature() const {
+  if (mesh_.sizing == nullptr) return model_.curvature;
+  const float noise = std::min(mesh_.sizing->field.noise(), kMostNoise);
+  return (kSizedCurvature + kNoiseCurvature * noise) * model_.curvature;
+}
+
 // Of an adaptive mesh: the bits of guided_stage.h.
 void Dynamics::scale_by_size(uint32_t begin, uint32_t end) {
-  const float alpha = kSizedCurvature * model_.curvature;
+  const float alpha = curvature();
   for (uint32_t v = begin; v < end; ++v) {
     const float size = std::max(1.0F, 1.0F + mesh_.position[v].w);
     force_.set(v, force_.at(v) * (alpha * (1.0F / (size * size * (size * size)))));
-  }
-}
-
-// Of an adaptive mesh: where the image is sampled, at the mean of the facets.
-void Dynamics::place_samples(int stage, const Streams3& normal, uint32_t begin, uint32_t end) {
-  const Float4* const position = stage_position(stage);
-  for (uint32_t v = begin; v < end; ++v) {
-    const Vec3 n = normal.at(v);
-    const Float4 &p = position[v], &l = laplacian_[v];
-    const float off = kFacets * dot(Vec3{l.x, l.y, l.z}, n);
-    sampled_[v] = {p.x + n.x * off, p.y + n.y * off, p.z + n.z * off, 0};
   }
 }
 
@@ -316,12 +309,14 @@ void Dynamics::image_forces(int stage, const Guide& guide, uint32_t begin, uint3
   const auto& [fx, fy, fz] = raw(force_);
   const auto delta = static_cast<float>(mesh_.delta);
   if (model_.attraction != 0) {
-    const Streams3& normal = image_normal(guide);
-    const auto& [nx, ny, nz] = raw(normal);
-    if (mesh_.sizing != nullptr) place_samples(stage, normal, begin, end);
-    const Float4* const at = mesh_.sizing == nullptr ? stage_position(stage) : sampled_.data();
-    kernels::iso_force(simd_, guide.image, at, nx, ny, nz, delta * model_.attraction, guide.iso,
-                       begin, end, fx, fy, fz);
+    if (mesh_.sizing != nullptr) {
+      kernels::sized_iso_force(simd_, surface_forces(stage, guide), mesh_.position.data(), begin,
+                               end, raw(force_));
+    } else {
+      const auto& [nx, ny, nz] = raw(image_normal(guide));
+      kernels::iso_force(simd_, guide.image, stage_position(stage), nx, ny, nz,
+                         delta * model_.attraction, guide.iso, begin, end, fx, fy, fz);
+    }
   }
   if (guide.gradient.data != nullptr) {
     const auto& [nx, ny, nz] =
@@ -353,14 +348,15 @@ kernels::Rk4Streams Dynamics::streams(int stage) {
 kernels::SurfaceForces Dynamics::surface_forces(int stage, const Guide& guide) const {
   return {mesh_.rings(),
           laplacian_.data(),
-          mesh_.sizing == nullptr ? model_.curvature : kSizedCurvature * model_.curvature,
+          curvature(),
           guide.image,
           stage_position(stage),
           raw(image_normal(guide)),
           static_cast<float>(mesh_.delta) * model_.attraction,
           guide.iso,
           mesh_.sizing != nullptr,
-          kFacets};
+          kFacets,
+          kStar};
 }
 
 // The last stage reads its positions from the other buffer.

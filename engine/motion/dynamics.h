@@ -93,8 +93,8 @@ class Dynamics {
   // A stage: the forces, and the update under them.
   void run_stage(int stage, const Guide& guide);
   void gather_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end);
+  float curvature() const;
   void scale_by_size(uint32_t begin, uint32_t end);
-  void place_samples(int stage, const Streams3& normal, uint32_t begin, uint32_t end);
   void image_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end);
   // From the last stage to the end of the step: where nothing lies between them in one pass.
   void last_stage_and_move(const Guide& guide);
@@ -139,7 +139,6 @@ class Dynamics {
   Streams3 user_force_;
   Buffer<Float4> stage_[2];
   Buffer<Float4> laplacian_;
-  Buffer<Float4> sampled_;
 };
 
 }  // namespace plc

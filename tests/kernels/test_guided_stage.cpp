@@ -84,7 +84,64 @@ struct Stage {
   }
 };
 
+// Of an adaptive mesh, with sizes from a tenth of delta on.
+kernels::SurfaceForces sized(Stage& s) {
+  for (uint32_t v = 0; v < s.rings.count(); ++v) {
+    s.rings.position[v].w = 0.1F * static_cast<float>(v % 40) - 0.9F;
+  }
+  kernels::SurfaceForces f = s.forces();
+  f.sized = true;
+  f.facets = 0.25F;
+  f.star = 0.75F;
+  return f;
+}
+
+// The image's value for a vertex, from single samples.
+float sized_value(const kernels::SurfaceForces& f, uint32_t v) {
+  const auto sample = [&f](Float4 place) {
+    float value;
+    scalar::sample_trilinear(f.image, &place, 0, 1, &value);
+    return value;
+  };
+  const Float4 &p = f.position[v], &l = f.laplacian[v];
+  const float x = f.normal.x[v], y = f.normal.y[v], z = f.normal.z[v];
+  const float off = f.facets * (l.x * x + l.y * y + l.z * z);
+  const float own = sample({p.x + off * x, p.y + off * y, p.z + off * z, 0});
+  const float part = std::min(p.w, f.star);
+  const uint32_t valence = f.ring.valence[v];
+  if (part <= 0 || valence == 0 || valence > plc::kRingSlots) return own;
+  float sum = 0;
+  for (uint32_t k = 0; k < valence; ++k) {
+    const Float4& q = f.position[f.ring.slot(v, k)];
+    sum += sample({(p.x + q.x) / 2, (p.y + q.y) / 2, (p.z + q.z) / 2, 0});
+  }
+  return own + (sum / static_cast<float>(valence) - own) * part;
+}
+
 }  // namespace
+
+TEST_CASE("the image of an adaptive mesh is looked at in the middles of long edges, too",
+          "[kernels]") {
+  Stage expected;
+  const kernels::SurfaceForces f = sized(expected);
+  const uint32_t n = expected.rings.count();
+  scalar::sized_iso_force(f, f.position, 0, n, expected.three(18));
+  Stage before;
+  for (uint32_t v = 0; v < n; ++v) {
+    const float push = f.attraction * (f.iso - sized_value(f, v));
+    REQUIRE(expected.streams[18][v] ==
+            Approx(before.streams[18][v] + push * f.normal.x[v]).margin(1e-4));
+  }
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    CAPTURE(plc::simd_target_name(simd));
+    Stage got;
+    const kernels::SurfaceForces g = sized(got);
+    kernels::sized_iso_force(simd, g, g.position, 0, n, got.three(18));
+    for (size_t a = 18; a < 21; ++a) {
+      CHECK(first_difference(got.streams[a], expected.streams[a]) == -1);
+    }
+  }
+}
 
 TEST_CASE("a guided stage has the bits of its forces and its update one after the other",
           "[kernels]") {
@@ -105,15 +162,6 @@ TEST_CASE("a guided stage has the bits of its forces and its update one after th
 
 TEST_CASE("of an adaptive mesh stages have the bits of the scalar twin, and sizes stay",
           "[kernels]") {
-  const auto sized = [](Stage& s) {
-    for (uint32_t v = 0; v < s.rings.count(); ++v) {
-      s.rings.position[v].w = 0.1F * static_cast<float>(v % 40) - 0.9F;
-    }
-    kernels::SurfaceForces f = s.forces();
-    f.sized = true;
-    f.facets = 0.25F;
-    return f;
-  };
   Stage uniform;
   scalar::guided_stage(1, kNewton, uniform.forces(), uniform.rk4(), uniform.all());
   for (int stage = 0; stage < 4; ++stage) {

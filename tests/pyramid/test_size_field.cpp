@@ -7,6 +7,7 @@
 
 #include "engine/base/schedule.h"
 #include "tests/samples/sample_surfaces.h"
+#include "tests/samples/sample_volumes.h"
 
 namespace {
 
@@ -81,6 +82,27 @@ TEST_CASE("sizes go with the root of the radius and of the tolerance", "[size_fi
   // e^2 kappa / 16 = tolerance, both curvatures together; edges of 1.5 sizes; delta is 1.25 voxels.
   const double radius = 10 * 0.8, edge = std::sqrt(0.05 * 16 * radius / std::sqrt(2.0));
   CHECK(static_cast<double>(on_surface(10, 0.05)) == Approx(edge / 1.5).epsilon(0.25));
+}
+
+TEST_CASE("noise is told from shape", "[size_field]") {
+  const Image clean = ball(16);
+  const plc::SizeField of_clean = field_of(clean);
+  CHECK(of_clean.noise() < 0.005F);
+  for (const float deviation : {0.01F, 0.04F}) {
+    Image noisy = clean;
+    samples::Random random(3);
+    for (float& value : noisy.values) {
+      // About normal: the sum of twelve.
+      double sum = -6;
+      for (int k = 0; k < 12; ++k) sum += random.uniform(0, 1);
+      value += deviation * static_cast<float>(sum);
+    }
+    const plc::SizeField field = field_of(noisy);
+    // Values rise by 0.25 a delta.
+    CHECK(field.noise() == Approx(deviation / 0.25F).epsilon(0.15));
+    const float clean_size = at(of_clean, kMiddle + 16, kMiddle, kMiddle);
+    CHECK(at(field, kMiddle + 16, kMiddle, kMiddle) == Approx(clean_size).epsilon(0.25));
+  }
 }
 
 TEST_CASE("rods get the finest size, plates as thin do not", "[size_field]") {
