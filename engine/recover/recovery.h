@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/constants.h"
+#include "engine/base/defaults.h"
 #include "engine/base/schedule.h"
 #include "engine/base/state_io.h"
 #include "engine/base/statistics.h"
@@ -33,8 +35,9 @@ struct RecoverySpec {
   std::optional<SizeSpec> sizes;
   std::vector<double> isos;  // pi_I per level, normalised; [0] is that of I_0; empty: no iso force
   bool inside_above = true;
-  double gradient_bound = 0.1;  // of (8): the largest norm, in window per U_h; used norms are <= 1
-  int pad_voxels = 0;           // by which the pyramid's I_0 is larger than the input on every side
+  // Of (8): the largest norm, in window per U_h; used norms are <= 1.
+  double gradient_bound = defaults::kGradientBound;
+  int pad_voxels = kPadVoxels;  // by which the pyramid's I_0 is larger than the input on every side
   Anisotropy anisotropy = Anisotropy::kVoxel;
   StartSpec start;
   // Attachments and pins, their places in voxel indices of the unpadded I_0; the force is not read.
@@ -44,9 +47,9 @@ struct RecoverySpec {
   bool sleeping = true;       // sleep.h; never with a user's force, which may change at any time
   bool slow_vertices = true;  // 3.6; false: every vertex is checked in every iteration
   bool renumbering = true;    // along a space-filling curve, at refinements and as ids scatter
-  double epsilon = 5e-6;
-  double calm_speed = 0;  // delta per time; 0: the energy alone tells
-  int max_iterations = 2000;
+  double epsilon = defaults::kEpsilon;
+  double calm_speed = defaults::kCalmSpeed;  // delta per time; 0: the energy alone tells
+  int max_iterations = defaults::kMaxIterations;
 };
 
 struct LevelRecord {
