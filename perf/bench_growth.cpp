@@ -71,7 +71,6 @@ void forget_peak() {
 struct Vertex {
   plc::Vec3 position, velocity, normal;
   uint32_t valence;
-  uint8_t risk;
 };
 
 template <typename T>
@@ -88,8 +87,7 @@ void write_mesh(const plc::Mesh& mesh, std::FILE* file) {
   const uint32_t count = mesh.slots();
   put(file, &count, 1);
   for (uint32_t v = 0; v < count; ++v) {
-    const Vertex vertex{mesh.at(v), mesh.velocity.at(v), mesh.normal.at(v), mesh.valence(v),
-                        mesh.risk[v]};
+    const Vertex vertex{mesh.at(v), mesh.velocity.at(v), mesh.normal.at(v), mesh.valence(v)};
     put(file, &vertex, 1);
     for (uint32_t k = 0; k < vertex.valence; ++k) {
       const uint32_t w = mesh.neighbor(v, k);
@@ -107,7 +105,6 @@ void read_mesh(std::FILE* file, plc::Mesh& mesh) {
     get(file, &vertex, 1);
     const uint32_t v = mesh.create(vertex.position, vertex.velocity);
     mesh.normal.set(v, vertex.normal);
-    mesh.risk[v] = vertex.risk;
     plc::Neighbors ring;
     for (uint32_t k = 0; k < vertex.valence; ++k) {
       uint32_t w = 0;

@@ -5,6 +5,7 @@
 #include "engine/detect/spatial_hash.h"
 #include "engine/guard/meeting_search.h"
 #include "engine/mesh/mesh.h"
+#include "engine/mesh/vertex_bytes.h"
 #include "kernels/simd.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
@@ -15,10 +16,17 @@ namespace plc {
 // faces that meet go back to where they were and lose their speed; again, until none meet: in the
 // worst case all are back where they started. Only faces with a vertex at risk (risk.h) are tested,
 // against each other, and only where one of the two has moved.
+//
+//   risk           1      flags         attached to the mesh: kNear, other parts of the surface are
+//                                       near v; kFold, the surface is folded around v
 class MotionGuard {
  public:
   MotionGuard(Mesh& mesh, const Executor& executor, SimdTarget simd)
-      : mesh_(mesh), executor_(executor), simd_(simd), search_(simd) {}
+      : mesh_(mesh),
+        executor_(executor),
+        risk_(mesh, kNear, VertexBytes::Reset::kCreated),
+        simd_(simd),
+        search_(simd) {}
 
   // blocks: of kRingLanes vertices, with all that have moved and all their neighbours. Finds where
   // the surface folds now, against the normals of the movement's start.
@@ -26,16 +34,27 @@ class MotionGuard {
   // due: the vertices whose risk has been looked at anew; at_risk: those of all that it was found
   // for (Surroundings). The others keep theirs.
   void assess(const Vector<uint32_t>& due, const Vector<uint32_t>& at_risk);
+  // Whatever it was, v is at risk.
+  void suspect(uint32_t v) { risk_[v] = kNear; }
   // `before`: the positions before the movement, by id. The hash learns of the vertices that go
   // back, which are appended to `back`. Returns how many went back.
   int64_t take_back(const Buffer<Float4>& before, SpatialHash& hash, Vector<uint32_t>& back);
 
+  const VertexBytes& risk() const { return risk_; }
+  // restore(): after that of the mesh.
+  void save(StateWriter& to) const { risk_.save(to); }
+  void restore(StateReader& from) { risk_.restore(from); }
+
  private:
+  static constexpr uint8_t kNear = 1;
+  static constexpr uint8_t kFold = 2;
+
   int64_t put_back(const uint32_t* face, const Buffer<Float4>& before, SpatialHash& hash,
                    Vector<uint32_t>& back);
 
   Mesh& mesh_;
   const Executor& executor_;
+  VertexBytes risk_;
   SimdTarget simd_;
   Buffer<uint8_t> folds_;
   MeetingSearch search_;

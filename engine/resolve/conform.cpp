@@ -111,9 +111,7 @@ void put_at_rest(Mesh& mesh, const Executor& executor) {
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     mesh.wake(v);
     mesh.velocity.set(v, {});
-    mesh.risk[v] = Mesh::kNearRisk;
     mesh.path[v] = 0;
-    mesh.operations[v] = 0;
     mesh.turns[v] = 0;
     mesh.cut_id[v] = 0;
   }

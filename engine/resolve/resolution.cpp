@@ -67,7 +67,8 @@ void Resolution::restore(StateReader& from) {
 void Resolution::run(uint32_t iteration, const Vector<uint32_t>& moved_since,
                      OperationCounts& counts) {
   iteration_ = iteration;
-  std::fill(mesh_.operations.begin(), mesh_.operations.end(), uint8_t{0});
+  operations_.clear();
+  operations_.resize(mesh_.slots());
   pair_queue_ = moved_since;
   changed_.clear();
   counts.tetrahedron += tiny_.delete_turned_over(mesh_);
@@ -299,13 +300,13 @@ bool Resolution::free_footprint(const Candidate& candidate, uint32_t claim) {
 // Where an operation is put off the vertices stay due, so that the next iteration sees it again.
 bool Resolution::within_limit(const Candidate& candidate) {
   const Edge& e = candidate.edge;
-  const auto busiest = std::max(mesh_.operations[e.u], mesh_.operations[e.v]);
+  const auto busiest = std::max(operations_[e.u], operations_[e.v]);
   if (busiest >= kMaxOperationsPerVertex) {
     mesh_.wake(e.u);
     mesh_.wake(e.v);
     return false;
   }
-  mesh_.operations[e.u] = mesh_.operations[e.v] = static_cast<uint8_t>(busiest + 1);
+  operations_[e.u] = operations_[e.v] = static_cast<uint8_t>(busiest + 1);
   return true;
 }
 
