@@ -179,16 +179,6 @@ void time_step(benchmark::State& state, Bench& b, SimdTarget simd, int threads,
   state.SetLabel(std::to_string(hash));
 }
 
-float* px(Streams3& s) {
-  return s.x.data();
-}
-float* py(Streams3& s) {
-  return s.y.data();
-}
-float* pz(Streams3& s) {
-  return s.z.data();
-}
-
 kernels::Float3s raw(Streams3& s) {
   return {s.x.data(), s.y.data(), s.z.data()};
 }
@@ -226,28 +216,28 @@ void add_ring_kernels(Table& table) {
   });
   table.emplace_back("normals", [](Bench& b, SimdTarget simd) {
     Streams3& n = b.mesh.normal;
-    kernels::normals(simd, b.mesh.rings(), b.start.data(), b.all(), px(n), py(n), pz(n));
+    kernels::normals(simd, b.mesh.rings(), b.start.data(), b.all(), raw(n));
   });
   table.emplace_back("normals_and_laplacian", [](Bench& b, SimdTarget simd) {
     Streams3& n = b.mesh.normal;
-    kernels::normals_and_laplacian(simd, b.mesh.rings(), b.start.data(), b.all(), px(n), py(n),
-                                   pz(n), b.laplacian.data());
+    kernels::normals_and_laplacian(simd, b.mesh.rings(), b.start.data(), b.all(), raw(n),
+                                   b.laplacian.data());
   });
   table.emplace_back("curvature_force", [](Bench& b, SimdTarget simd) {
-    kernels::curvature_force(simd, b.mesh.rings(), b.laplacian.data(), 0.4F, 0, b.n(), px(b.force),
-                             py(b.force), pz(b.force));
+    kernels::curvature_force(simd, b.mesh.rings(), b.laplacian.data(), 0.4F, 0, b.n(),
+                             raw(b.force));
   });
   table.emplace_back("spring_force", [](Bench& b, SimdTarget simd) {
-    kernels::spring_force(simd, b.mesh.rings(), b.start.data(), 0.01F, 1.2F, {}, 0, b.n(),
-                          px(b.force), py(b.force), pz(b.force));
+    kernels::spring_force(simd, b.mesh.rings(), b.start.data(), {0.01F, 1.2F}, 0, b.n(),
+                          raw(b.force));
   });
 }
 
 void add_motion_kernels(Table& table) {
   table.emplace_back("iso_force", [](Bench& b, SimdTarget simd) {
     Streams3& n = b.mesh.normal;
-    kernels::iso_force(simd, b.image.view(), b.start.data(), px(n), py(n), pz(n), -0.8F,
-                       bench::Image::kIso, 0, b.n(), px(b.force), py(b.force), pz(b.force));
+    kernels::iso_force(simd, b.image.view(), b.start.data(), raw(n), {-0.8F, bench::Image::kIso}, 0,
+                       b.n(), raw(b.force));
   });
   for (const int stage : {0, 1, 3}) {
     table.emplace_back("rk4_stage_" + std::to_string(stage), [stage](Bench& b, SimdTarget simd) {

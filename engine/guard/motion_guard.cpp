@@ -18,8 +18,8 @@ void MotionGuard::find_folds(const Vector<uint32_t>& blocks) {
   const Streams3& n = mesh_.normal;
   run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {
     const Blocks part = Blocks::of(blocks.data(), blocks.size(), begin, end);
-    kernels::turned_faces(simd_, mesh_.rings(), mesh_.position.data(), part, n.x.data(), n.y.data(),
-                          n.z.data(), kRiskDot, folds_.data());
+    kernels::turned_faces(simd_, mesh_.rings(), mesh_.position.data(), part,
+                          {n.x.data(), n.y.data(), n.z.data()}, kRiskDot, folds_.data());
     for (size_t i = 0; i < part.count; ++i) {
       for (uint32_t v = part.begin(i); v < part.begin(i) + kRingLanes; ++v) {
         const uint32_t near = risk_[v] & kNear;

@@ -64,9 +64,7 @@ inline uint64_t iso_force(SimdTarget simd) {
   const auto n = static_cast<uint32_t>(at.size());
   const Three normal(n, -1, 1, 43);
   Three force(n, -1, 1, 46);
-  const auto [nx, ny, nz] = normal.in();
-  const auto [fx, fy, fz] = force.out();
-  kernels::iso_force(simd, image.view, at.data(), nx, ny, nz, -1.2F, 0.4F, 0, n, fx, fy, fz);
+  kernels::iso_force(simd, image.view, at.data(), normal.in(), {-1.2F, 0.4F}, 0, n, force.out());
   return hash_of(force);
 }
 
@@ -89,10 +87,8 @@ inline uint64_t gradient_force(SimdTarget simd) {
   const auto n = static_cast<uint32_t>(at.size());
   const Three normal(n, -1, 1, 54);
   Three force(n, -1, 1, 57);
-  const auto [nx, ny, nz] = normal.in();
-  const auto [fx, fy, fz] = force.out();
-  kernels::gradient_force(simd, view, at.data(), nx, ny, nz, 1.3F, -0.4F, {1, 0.5F, 3}, 0, n, fx,
-                          fy, fz);
+  kernels::gradient_force(simd, view, at.data(), normal.in(), {1.3F, -0.4F, {1, 0.5F, 3}}, 0, n,
+                          force.out());
   return hash_of(force);
 }
 
