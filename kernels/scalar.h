@@ -116,10 +116,9 @@ void normalize_voxels(VoxelType type, const void* voxels, size_t count, double l
 VoxelExtent voxel_extent(VoxelType type, const void* voxels, size_t count);
 
 // separable.h
-void reduce_x(const TapsView& taps, size_t outputs, const float* in, size_t width, size_t in_stride,
-              size_t rows, float* out, size_t out_stride, float* scratch);
-void reduce_y(const TapsView& taps, size_t begin, size_t end, const float* in, size_t in_stride,
-              size_t width, float* out, size_t out_stride);
+void reduce_x(const TapsView& taps, const ConstRows& in, size_t rows, const Rows& out,
+              float* scratch);
+void reduce_y(const TapsView& taps, size_t begin, size_t end, const ConstRows& in, const Rows& out);
 void reduce_z(const float* weights, int32_t taps, const float* const* planes, size_t count,
               float* out);
 

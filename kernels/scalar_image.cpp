@@ -200,23 +200,26 @@ VoxelExtent voxel_extent(VoxelType type, const void* voxels, size_t count) {
   return {};
 }
 
-void reduce_x(const TapsView& taps, size_t outputs, const float* in, size_t /*width*/,
-              size_t in_stride, size_t rows, float* out, size_t out_stride, float* /*scratch*/) {
+void reduce_x(const TapsView& taps, const ConstRows& in, size_t rows, const Rows& out,
+              float* /*scratch*/) {
   for (size_t r = 0; r < rows; ++r) {
-    for (size_t i = 0; i < outputs; ++i) {
-      out[r * out_stride + i] = weighted_sum(taps.weights + i * static_cast<size_t>(taps.taps),
-                                             taps.taps, in + r * in_stride + taps.first[i], 1);
+    for (size_t i = 0; i < out.width; ++i) {
+      out.values[r * out.stride + i] =
+          weighted_sum(taps.weights + i * static_cast<size_t>(taps.taps), taps.taps,
+                       in.values + r * in.stride + taps.first[i], 1);
     }
   }
 }
 
-void reduce_y(const TapsView& taps, size_t begin, size_t end, const float* in, size_t in_stride,
-              size_t width, float* out, size_t out_stride) {
+void reduce_y(const TapsView& taps, size_t begin, size_t end, const ConstRows& in,
+              const Rows& out) {
   for (size_t j = begin; j < end; ++j) {
-    const float* row = in + static_cast<size_t>(taps.first[j] - taps.first[begin]) * in_stride;
+    const float* row =
+        in.values + static_cast<size_t>(taps.first[j] - taps.first[begin]) * in.stride;
     const float* weights = taps.weights + j * static_cast<size_t>(taps.taps);
-    for (size_t i = 0; i < width; ++i) {
-      out[(j - begin) * out_stride + i] = weighted_sum(weights, taps.taps, row + i, in_stride);
+    for (size_t i = 0; i < in.width; ++i) {
+      out.values[(j - begin) * out.stride + i] =
+          weighted_sum(weights, taps.taps, row + i, in.stride);
     }
   }
 }

@@ -50,6 +50,13 @@ class Hash {
   uint64_t hash_ = 0xCBF29CE484222325U;
 };
 
+kernels::Float3s raw(Streams3& s) {
+  return {s.x.data(), s.y.data(), s.z.data()};
+}
+kernels::ConstFloat3s raw(const Streams3& s) {
+  return {s.x.data(), s.y.data(), s.z.data()};
+}
+
 // The mesh, and one of every stream that kernels write.
 struct Bench {
   bench::Image image;
@@ -83,8 +90,7 @@ struct Bench {
       mesh.path[v] = 0;
     }
     kernels::normals_and_laplacian(SimdTarget::kScalar, mesh.rings(), start.data(), all(),
-                                   mesh.normal.x.data(), mesh.normal.y.data(), mesh.normal.z.data(),
-                                   laplacian.data());
+                                   raw(mesh.normal), laplacian.data());
     sum = 0;
   }
   uint64_t hash() const {
@@ -177,13 +183,6 @@ void time_step(benchmark::State& state, Bench& b, SimdTarget simd, int threads,
                                                 benchmark::Counter::kInvert);
   state.counters["vertices"] = vertices;
   state.SetLabel(std::to_string(hash));
-}
-
-kernels::Float3s raw(Streams3& s) {
-  return {s.x.data(), s.y.data(), s.z.data()};
-}
-kernels::ConstFloat3s raw(const Streams3& s) {
-  return {s.x.data(), s.y.data(), s.z.data()};
 }
 
 kernels::Rk4Streams rk4(Bench& b) {

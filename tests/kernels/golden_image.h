@@ -133,7 +133,7 @@ inline uint64_t reduce_x(SimdTarget simd) {
   const Taps taps(kWidth, 53, 5, 67);
   std::vector<float> out(size_t{21} * 53);
   plc::Buffer<float> scratch(kernels::reduce_x_scratch(kWidth));
-  kernels::reduce_x(simd, taps.view, 53, rows.row[0], kWidth, kWidth, 21, out.data(), 53,
+  kernels::reduce_x(simd, taps.view, {rows.row[0], kWidth, kWidth}, 21, {out.data(), 53, 53},
                     scratch.data());
   return hash_of(out);
 }
@@ -142,7 +142,8 @@ inline uint64_t reduce_y(SimdTarget simd) {
   const Rows<21> rows;
   const Taps taps(21, 12, 4, 68);
   std::vector<float> out(size_t{12} * kWidth);
-  kernels::reduce_y(simd, taps.view, 0, 12, rows.row[0], kWidth, kWidth, out.data(), kWidth);
+  kernels::reduce_y(simd, taps.view, 0, 12, {rows.row[0], kWidth, kWidth},
+                    {out.data(), kWidth, kWidth});
   return hash_of(out);
 }
 
