@@ -9,33 +9,35 @@ namespace plc {
 
 namespace {
 
-// What a transformation takes, with the looks around it, and what an iteration takes for a vertex
-// that may sleep, in movements of a vertex: least squares over the iterations of 14 runs on real
-// and noisy images, of one thread.
+// The unit of work is the movement of one vertex. A transformation, with all the checks around it,
+// takes kTransformation of it, and every vertex, asleep or not, kVertex in each iteration. Found by
+// least squares over the iterations of 14 runs of one thread on real and noisy images.
 constexpr double kTransformation = 70, kVertex = 0.15;
-// What comes before a round - refinement, search for late bubbles, their surfaces - takes as long
-// as its transformations once more.
+// The transformations of a round's first iteration count so many times: what comes before the round
+// - refinement, the search for late bubbles, their surfaces - takes about as long as they do.
 constexpr double kBeforeRound = 2;
-// A level against the next coarser one: three times the vertices, and a few more iterations.
+// So many times the work of a level is that of the next finer one, which has three times the
+// vertices and takes a few more iterations.
 constexpr double kGrowth = 4;
-// Late bubbles of the last level and a round for them, as a part of the level.
+// The work of the last level's late bubbles and of the round for them, as a part of the level's.
 constexpr double kAgain = 0.1;
-// Rates and energies are averaged over so many iterations, a quarter of the round while it is
-// young.
+// Rates and energies are averaged over the last kRecent iterations, or over the last 1 / kYoung of
+// the round while that is less.
 constexpr double kRecent = 8, kYoung = 4;
-// The energy of a round falls like its iterations to minus this.
+// The energy of a round falls like the number of its iterations to the power of -kPower.
 constexpr double kPower = 1.3;
-// What is left of a round is at least this part of what it has taken, and at most so many times
-// that or what the one before it took: an energy that stays where it is, as where fronts are on
-// their way, may fall at any time.
+// A round goes on for at least kLeast times the iterations that it has taken, and for at most kMost
+// times these or those of the round before, whichever is more: an energy that stays where it is, as
+// while fronts are on their way, may fall at any time.
 constexpr double kLeast = 0.12, kMost = 4;
-// A round takes at least this part of what the one before it took, and while it is young as much:
-// from rest its energy rises first.
+// A round takes at least this part of the iterations of the round before. While it is young it is
+// taken to need as many: it starts from rest, and its energy rises before it falls.
 constexpr double kLeastOfBefore = 0.5;
-// Its iterations become cheaper, the last of many by this part.
+// Iterations become cheaper as a round goes on: where kMany times those that it has taken are still
+// to come, by kCheaper in the mean.
 constexpr double kCheaper = 0.3, kMany = 4;
 
-// Of the last iteration in a mean.
+// The weight of the last iteration in a running mean.
 double share_of(int iterations) {
   return std::clamp(kYoung / iterations, 1 / kRecent, 1.0);
 }
@@ -70,8 +72,8 @@ void ProgressEstimate::observe(const OperationCounts& level, double energy, doub
 double ProgressEstimate::round_left(const Ahead& ahead) const {
   if (ahead.calm) return 0;
   const double took = iterations_;
-  // The mean of the energy's logarithm lies above that of now by the power for each round that it
-  // lies back.
+  // recent_ is a mean over some iterations, so it lies above the logarithm of the energy now. An
+  // iteration lowers that logarithm by kPower / took; the mean lies 1 / share - 1 iterations back.
   const double now = recent_ / kPower - (1 / share_of(iterations_) - 1) / took;
   double left = took * std::expm1(std::clamp(now, 0.0, 20.0));
   left = std::min(left, kMost * std::max(took, 1.0 * before_));
@@ -79,7 +81,7 @@ double ProgressEstimate::round_left(const Ahead& ahead) const {
   left = ahead.late ? std::min(left, 1.0 * kMinIterations) : std::max(left, least - took);
   left = std::max({left, kLeast * took, kMinIterations - took});
   if (left >= ahead.iterations) return ahead.iterations * rate_;
-  // Before it ends all are awake for a while.
+  // Before the round ends every vertex is awake for kConfirmIterations.
   return left * rate_ * (1 - kCheaper * std::min(1.0, left / (kMany * took))) +
          kConfirmIterations * std::max(0.0, ahead.vertices - rate_);
 }

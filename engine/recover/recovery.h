@@ -99,7 +99,7 @@ class Recovery {
   Recovery(Pyramid pyramid, RecoverySpec spec, const Schedule& schedule, SimdTarget simd,
            RecoveryHooks hooks, Mesh& mesh, std::vector<LevelRecord>& records);
 
-  // Up to the initial surface of the coarsest level that shows the object. A level that holds no
+  // Makes the initial surface on the coarsest level that shows the object. A level that holds no
   // surface has 0 vertices in its record; the next finer one then starts anew. Errors: those of
   // start_surface(), kInvalidData (no level holds a surface), kOutOfMemory.
   Status start();
@@ -115,9 +115,10 @@ class Recovery {
   // Of the last iteration.
   const RecoveryProgress& progress() const { return progress_; }
 
-  // The state between two calls, mesh and records included, pyramid, spec and hooks not. restore():
-  // instead of start(), of a recovery with equal ones, which then goes on with the same bits. False
-  // where what is read is no such state; the recovery cannot be used then.
+  // save() writes the state between two calls: mesh and records, but not the pyramid, the spec and
+  // the hooks. restore() is called instead of start() on a recovery with an equal pyramid and spec,
+  // which then goes on with the same bits. It returns false where what it reads is no such state;
+  // the recovery cannot be used then.
   void save(StateWriter& to) const;
   bool restore(StateReader& from);
 
@@ -137,7 +138,7 @@ class Recovery {
     int iteration = 0;
     int calm = 0;  // iterations in a row
     Confirmation confirmation;
-    int64_t most_vertices = 0;  // more are no surface of the level's image
+    int64_t most_vertices = 0;  // no surface of the level's image has more
     int repairs = 0;
   };
 
@@ -199,7 +200,7 @@ class Recovery {
   ProgressEstimate estimate_;
 };
 
-// All of it: start and advance to the end.
+// A whole recovery: start, and advance to the end.
 Status pyramidal_recover_shape(Pyramid pyramid, const RecoverySpec& spec, const Schedule& schedule,
                                SimdTarget simd, const RecoveryHooks& hooks, Mesh& mesh,
                                std::vector<LevelRecord>& records);

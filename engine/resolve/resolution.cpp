@@ -121,7 +121,7 @@ uint32_t Resolution::stamp_queue(const Vector<uint32_t>& queue) {
   return stamps_;
 }
 
-// Ascending, each living vertex once.
+// Makes a queue ascending, with each living vertex once.
 void Resolution::unique(Vector<uint32_t>& queue) {
   stamp_.resize(mesh_.slots(), 0);
   if (queue.size() < mesh_.slots() / kSortedQueue) {
@@ -196,7 +196,8 @@ Vector<Candidate> Resolution::pair_candidates(const Vector<uint32_t>& queue, boo
       out.push_back(*candidate);
     }
   };
-  // Nearest first whatever they ask for; a pair may have been found twice.
+  // The nearest pairs come first, whatever transformation they ask for. A pair may have been found
+  // from both of its ends.
   const auto nearer = [](const Candidate& l, const Candidate& r) {
     return std::tie(l.key, l.edge.u, l.edge.v, l.operation, l.edge.a) <
            std::tie(r.key, r.edge.u, r.edge.v, r.operation, r.edge.a);
