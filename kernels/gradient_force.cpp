@@ -34,23 +34,21 @@ HWY_INLINE Floats3 sample(const GradientView& gradient, const Floats3& p) {
   return lerp3(sample_plane(gradient.data, at), sample_plane(gradient.data + at.plane, at), at.z);
 }
 
-void gradient_force(const GradientView& gradient, const Float4* position, const float* nx,
-                    const float* ny, const float* nz, float along_normal, float along_tangent,
-                    const std::array<float, 3>& map, uint32_t begin, uint32_t end, float* fx,
-                    float* fy, float* fz) {
+void gradient_force(const GradientView& gradient, const Float4* position, ConstFloat3s normal,
+                    const GradientPull& pull, uint32_t begin, uint32_t end, Float3s force) {
   const FloatTag d;
-  const Floats normal_factor = hn::Set(d, along_normal);
-  const Floats tangent_factor = hn::Set(d, along_tangent);
+  const Floats normal_factor = hn::Set(d, pull.along_normal);
+  const Floats tangent_factor = hn::Set(d, pull.along_tangent);
   for (uint32_t i = begin; i < end; i += kLanes) {
     const Floats3 g = sample(gradient, load_packed(position + i));
-    const Floats3 n = load3(nx, ny, nz, i);
+    const Floats3 n = load3(normal, i);
     const Floats3 normal_part = n * dot(g, n);
     const Floats3 tangent_part = g - normal_part;
-    const Floats3 pull = normal_part * normal_factor + tangent_part * tangent_factor;
-    const Floats3 mapped = {hn::Mul(pull.x, hn::Set(d, map[0])),
-                            hn::Mul(pull.y, hn::Set(d, map[1])),
-                            hn::Mul(pull.z, hn::Set(d, map[2]))};
-    store3(load3(fx, fy, fz, i) + mapped, fx, fy, fz, i);
+    const Floats3 pulled = normal_part * normal_factor + tangent_part * tangent_factor;
+    const Floats3 mapped = {hn::Mul(pulled.x, hn::Set(d, pull.map[0])),
+                            hn::Mul(pulled.y, hn::Set(d, pull.map[1])),
+                            hn::Mul(pulled.z, hn::Set(d, pull.map[2]))};
+    store3(load3(force, i) + mapped, force, i);
   }
 }
 
@@ -66,11 +64,10 @@ namespace plc::kernels {
 HWY_EXPORT(gradient_force);
 
 void gradient_force(SimdTarget simd, const GradientView& gradient, const Float4* position,
-                    const float* nx, const float* ny, const float* nz, float along_normal,
-                    float along_tangent, const std::array<float, 3>& map, uint32_t begin,
-                    uint32_t end, float* fx, float* fy, float* fz) {
+                    ConstFloat3s normal, const GradientPull& pull, uint32_t begin, uint32_t end,
+                    Float3s force) {
   PLC_DISPATCH(simd, gradient_force)
-  (gradient, position, nx, ny, nz, along_normal, along_tangent, map, begin, end, fx, fy, fz);
+  (gradient, position, normal, pull, begin, end, force);
 }
 
 }  // namespace plc::kernels

@@ -210,7 +210,7 @@ Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& f
 }
 
 void sized_iso_force(const SurfaceForces& f, const Float4* sizes, uint32_t begin, uint32_t end,
-                     const Float3s& force) {
+                     Float3s force) {
   const FloatTag d;
   with_voxel_type(f.image.form.type, [&](auto voxel) HWY_ATTR {
     for (uint32_t i = begin; i < end; i += kLanes) {
@@ -246,7 +246,7 @@ Movement guided_move(SimdTarget simd, const Rk4Coefficients& coefficients,
 }
 
 void sized_iso_force(SimdTarget simd, const SurfaceForces& forces, const Float4* sizes,
-                     uint32_t begin, uint32_t end, const Float3s& force) {
+                     uint32_t begin, uint32_t end, Float3s force) {
   PLC_DISPATCH(simd, sized_iso_force)(forces, sizes, begin, end, force);
 }
 

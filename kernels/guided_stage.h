@@ -43,6 +43,6 @@ Movement guided_move(SimdTarget simd, const Rk4Coefficients& coefficients,
 // Of forces with `sized`: f += attraction (iso - value) n, (7) alone. sizes: records whose w is the
 // size above delta. begin and end are multiples of kRingLanes.
 void sized_iso_force(SimdTarget simd, const SurfaceForces& forces, const Float4* sizes,
-                     uint32_t begin, uint32_t end, const Float3s& force);
+                     uint32_t begin, uint32_t end, Float3s force);
 
 }  // namespace plc::kernels

@@ -30,15 +30,15 @@ void sample_trilinear(const ImageView& image, const Float4* position, uint32_t b
   scalar::sample_trilinear(image, position, i, end, values);
 }
 
-void iso_force(const ImageView& image, const Float4* position, const float* nx, const float* ny,
-               const float* nz, float coefficient, float iso, uint32_t begin, uint32_t end,
-               float* fx, float* fy, float* fz) {
+void iso_force(const ImageView& image, const Float4* position, ConstFloat3s normal,
+               const IsoPull& pull, uint32_t begin, uint32_t end, Float3s force) {
   with_voxel_type(image.form.type, [&](auto voxel) HWY_ATTR {
     const FloatTag d;
     for (uint32_t i = begin; i < end; i += kLanes) {
       const Floats value = sample<decltype(voxel)>(image, load_packed(position + i));
-      const Floats push = hn::Mul(hn::Set(d, coefficient), hn::Sub(hn::Set(d, iso), value));
-      store3(load3(fx, fy, fz, i) + load3(nx, ny, nz, i) * push, fx, fy, fz, i);
+      const Floats push =
+          hn::Mul(hn::Set(d, pull.coefficient), hn::Sub(hn::Set(d, pull.iso), value));
+      store3(load3(force, i) + load3(normal, i) * push, force, i);
     }
   });
 }
@@ -60,11 +60,10 @@ void sample_trilinear(SimdTarget simd, const ImageView& image, const Float4* pos
   PLC_DISPATCH(simd, sample_trilinear)(image, position, begin, end, values);
 }
 
-void iso_force(SimdTarget simd, const ImageView& image, const Float4* position, const float* nx,
-               const float* ny, const float* nz, float coefficient, float iso, uint32_t begin,
-               uint32_t end, float* fx, float* fy, float* fz) {
+void iso_force(SimdTarget simd, const ImageView& image, const Float4* position, ConstFloat3s normal,
+               const IsoPull& pull, uint32_t begin, uint32_t end, Float3s force) {
   PLC_DISPATCH(simd, iso_force)
-  (image, position, nx, ny, nz, coefficient, iso, begin, end, fx, fy, fz);
+  (image, position, normal, pull, begin, end, force);
 }
 
 }  // namespace plc::kernels

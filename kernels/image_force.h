@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 
+#include "kernels/float3s.h"
 #include "kernels/image.h"
 #include "kernels/ring.h"
 #include "kernels/simd.h"
@@ -13,10 +14,14 @@ namespace plc::kernels {
 void sample_trilinear(SimdTarget simd, const ImageView& image, const Float4* position,
                       uint32_t begin, uint32_t end, float* values);
 
-// f += coefficient (iso - Pi(x)) n: eq. (7) with coefficient = delta alpha_I, signed.
+struct IsoPull {
+  float coefficient;  // delta alpha_I, signed
+  float iso;
+};
+
+// f += coefficient (iso - Pi(x)) n: eq. (7).
 // begin and end are multiples of kRingLanes.
-void iso_force(SimdTarget simd, const ImageView& image, const Float4* position, const float* nx,
-               const float* ny, const float* nz, float coefficient, float iso, uint32_t begin,
-               uint32_t end, float* fx, float* fy, float* fz);
+void iso_force(SimdTarget simd, const ImageView& image, const Float4* position, ConstFloat3s normal,
+               const IsoPull& pull, uint32_t begin, uint32_t end, Float3s force);
 
 }  // namespace plc::kernels

@@ -16,14 +16,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace plc::kernels::HWY_NAMESPACE {
 
-template <class Streams>
-HWY_INLINE Floats3 load3(const Streams& s, uint32_t i) {
-  return load3(s.x, s.y, s.z, i);
-}
-HWY_INLINE void store3(const Floats3& a, const Float3s& s, uint32_t i) {
-  store3(a, s.x, s.y, s.z, i);
-}
-
 // Coefficients of stage kStage in all lanes.
 template <int kStage>
 struct Rk4Lanes {

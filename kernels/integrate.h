@@ -3,19 +3,12 @@
 #include <cstdint>
 
 #include "kernels/blocks.h"
+#include "kernels/float3s.h"
 #include "kernels/ring.h"
 #include "kernels/simd.h"
 
 // Bits do not depend on `simd`.
 namespace plc::kernels {
-
-// Three streams of one vector quantity.
-struct Float3s {
-  float *x, *y, *z;
-};
-struct ConstFloat3s {
-  const float *x, *y, *z;
-};
 
 // The streams of one RK4 step of m x'' + gamma x' = f.
 struct Rk4Streams {

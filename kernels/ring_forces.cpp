@@ -50,7 +50,7 @@ void laplacian(const RingView& ring, const Float4* position, const Blocks& block
 }
 
 void curvature_force(const RingView& ring, const Float4* laplacian, float alpha_c, uint32_t begin,
-                     uint32_t end, float* fx, float* fy, float* fz) {
+                     uint32_t end, Float3s force) {
   const FloatTag d;
   const Floats alpha = hn::Set(d, alpha_c);
   for (uint32_t v = begin; v < end; v += kLanes) {
@@ -58,7 +58,7 @@ void curvature_force(const RingView& ring, const Float4* laplacian, float alpha_
     const Floats3 sum = record_sum(ring, laplacian, v, valence);
     const FloatMask alive = hn::Gt(valence, hn::Zero(d));
     const Floats3 own = load_packed(laplacian + v);
-    store3(where(alive, (own - sum * inverse_valence(valence)) * alpha), fx, fy, fz, v);
+    store3(where(alive, (own - sum * inverse_valence(valence)) * alpha), force, v);
   }
 }
 
@@ -88,21 +88,21 @@ struct SpringSum {
   }
 };
 
-void spring_force(const RingView& ring, const Float4* position, float alpha_e, float rest_length,
-                  const Metric& metric, uint32_t begin, uint32_t end, float* fx, float* fy,
-                  float* fz) {
+void spring_force(const RingView& ring, const Float4* position, const Springs& springs,
+                  uint32_t begin, uint32_t end, Float3s force) {
   const FloatTag d;
-  const Floats alpha = hn::Set(d, alpha_e);
+  const Floats alpha = hn::Set(d, springs.alpha);
   for (uint32_t v = begin; v < end; v += kLanes) {
     const Floats valence = load_valence(ring, v);
-    SpringSum walk{load_packed(position + v), hn::Set(d, rest_length), spread(metric)};
+    SpringSum walk{load_packed(position + v), hn::Set(d, springs.rest_length),
+                   spread(springs.metric)};
     walk_ring(ring, position, v, valence, walk);
     if (HWY_UNLIKELY(has_tails(valence))) {
       walk.sum = with_tails(ring, v, walk.sum, [&](uint32_t u) {
-        return scalar::spring_sum(ring, position, rest_length, metric, u);
+        return scalar::spring_sum(ring, position, springs.rest_length, springs.metric, u);
       });
     }
-    store3(load3(fx, fy, fz, v) + walk.sum * alpha, fx, fy, fz, v);
+    store3(load3(force, v) + walk.sum * alpha, force, v);
   }
 }
 
@@ -138,13 +138,12 @@ HWY_INLINE Floats3 normal_of(const RingView& ring, const Float4* position, uint3
   return sum * hn::IfThenElseZero(some, hn::Div(hn::Set(d, 1.0F), length));
 }
 
-void normals(const RingView& ring, const Float4* position, const Blocks& blocks, float* nx,
-             float* ny, float* nz) {
+void normals(const RingView& ring, const Float4* position, const Blocks& blocks, Float3s normal) {
   for_lanes(ring, position, blocks, [&](uint32_t v) HWY_ATTR {
     const Floats valence = load_valence(ring, v);
     NormalSum walk{load_packed(position + v)};
     walk_ring(ring, position, v, valence, walk);
-    store3(normal_of(ring, position, v, valence, walk), nx, ny, nz, v);
+    store3(normal_of(ring, position, v, valence, walk), normal, v);
   });
 }
 
@@ -159,7 +158,7 @@ struct NormalAndDifferenceSum : NormalSum {
 };
 
 void normals_and_laplacian(const RingView& ring, const Float4* position, const Blocks& blocks,
-                           float* nx, float* ny, float* nz, Float4* laplacian) {
+                           Float3s normal, Float4* laplacian) {
   for_lanes(ring, position, blocks, [&](uint32_t v) HWY_ATTR {
     const Floats valence = load_valence(ring, v);
     NormalAndDifferenceSum walk(load_packed(position + v));
@@ -169,25 +168,24 @@ void normals_and_laplacian(const RingView& ring, const Float4* position, const B
         return scalar::difference_sum(ring, position, u);
       });
     }
-    store3(normal_of(ring, position, v, valence, walk), nx, ny, nz, v);
+    store3(normal_of(ring, position, v, valence, walk), normal, v);
     store_packed(walk.differences * inverse_valence(valence), laplacian + v);
   });
 }
 
-void metric_normals(const Metric& metric, const float* nx, const float* ny, const float* nz,
-                    uint32_t begin, uint32_t end, float* mx, float* my, float* mz, float* step_x,
-                    float* step_y, float* step_z) {
+void metric_normals(const Metric& metric, ConstFloat3s normal, uint32_t begin, uint32_t end,
+                    Float3s stretched, Float3s step) {
   const FloatTag d;
   const Floats one = hn::Set(d, 1.0F);
   const Floats3 lengths = spread(metric);
   const Floats3 inverse{hn::Div(one, lengths.x), hn::Div(one, lengths.y), hn::Div(one, lengths.z)};
   for (uint32_t v = begin; v < end; v += kLanes) {
-    const Floats3 k = scaled(load3(nx, ny, nz, v), inverse);
+    const Floats3 k = scaled(load3(normal, v), inverse);
     const Floats length = hn::Sqrt(dot(k, k));
     const FloatMask some = hn::Gt(length, hn::Zero(d));
     const Floats3 m = k * hn::IfThenElseZero(some, hn::Div(one, length));
-    store3(m, mx, my, mz, v);
-    store3(scaled(m, inverse), step_x, step_y, step_z, v);
+    store3(m, stretched, v);
+    store3(scaled(m, inverse), step, v);
   }
 }
 
@@ -260,13 +258,13 @@ struct TurnedFaces {
 };
 
 void turned_faces(const RingView& ring, const Float4* position, const Blocks& blocks,
-                  const float* nx, const float* ny, const float* nz, float most, uint8_t* flags) {
+                  ConstFloat3s normal, float most, uint8_t* flags) {
   const FloatTag d;
   const hn::RebindToSigned<FloatTag> d32;
   const hn::Rebind<uint8_t, FloatTag> d8;
   for_lanes(ring, position, blocks, [&](uint32_t v) HWY_ATTR {
     const Floats valence = load_valence(ring, v);
-    TurnedFaces walk{load_packed(position + v), load3(nx, ny, nz, v), hn::Set(d, most * most)};
+    TurnedFaces walk{load_packed(position + v), load3(normal, v), hn::Set(d, most * most)};
     walk_ring(ring, position, v, valence, walk);
     walk.test(hn::Gt(valence, hn::Zero(d)), walk.first);
     const auto bits = hn::IfThenElseZero(hn::RebindMask(d32, walk.turned), hn::Set(d32, 1));
@@ -274,7 +272,8 @@ void turned_faces(const RingView& ring, const Float4* position, const Blocks& bl
     if (HWY_LIKELY(!has_tails(valence))) return;
     for (uint32_t u = v; u < v + kLanes; ++u) {
       if (ring.valence[u] <= kRingSlots) continue;
-      flags[u] = scalar::turned_flag(ring, position, {nx[u], ny[u], nz[u]}, most, u);
+      flags[u] =
+          scalar::turned_flag(ring, position, {normal.x[u], normal.y[u], normal.z[u]}, most, u);
     }
   });
 }
@@ -333,33 +332,30 @@ void laplacian(SimdTarget simd, const RingView& ring, const Float4* position, co
 }
 
 void curvature_force(SimdTarget simd, const RingView& ring, const Float4* laplacian, float alpha_c,
-                     uint32_t begin, uint32_t end, float* fx, float* fy, float* fz) {
-  PLC_DISPATCH(simd, curvature_force)(ring, laplacian, alpha_c, begin, end, fx, fy, fz);
+                     uint32_t begin, uint32_t end, Float3s force) {
+  PLC_DISPATCH(simd, curvature_force)(ring, laplacian, alpha_c, begin, end, force);
 }
 
-void spring_force(SimdTarget simd, const RingView& ring, const Float4* position, float alpha_e,
-                  float rest_length, const Metric& metric, uint32_t begin, uint32_t end, float* fx,
-                  float* fy, float* fz) {
+void spring_force(SimdTarget simd, const RingView& ring, const Float4* position,
+                  const Springs& springs, uint32_t begin, uint32_t end, Float3s force) {
   PLC_DISPATCH(simd, spring_force)
-  (ring, position, alpha_e, rest_length, metric, begin, end, fx, fy, fz);
+  (ring, position, springs, begin, end, force);
 }
 
 void normals(SimdTarget simd, const RingView& ring, const Float4* position, const Blocks& blocks,
-             float* nx, float* ny, float* nz) {
-  PLC_DISPATCH(simd, normals)(ring, position, blocks, nx, ny, nz);
+             Float3s normal) {
+  PLC_DISPATCH(simd, normals)(ring, position, blocks, normal);
 }
 
 void normals_and_laplacian(SimdTarget simd, const RingView& ring, const Float4* position,
-                           const Blocks& blocks, float* nx, float* ny, float* nz,
-                           Float4* laplacian) {
-  PLC_DISPATCH(simd, normals_and_laplacian)(ring, position, blocks, nx, ny, nz, laplacian);
+                           const Blocks& blocks, Float3s normal, Float4* laplacian) {
+  PLC_DISPATCH(simd, normals_and_laplacian)(ring, position, blocks, normal, laplacian);
 }
 
-void metric_normals(SimdTarget simd, const Metric& metric, const float* nx, const float* ny,
-                    const float* nz, uint32_t begin, uint32_t end, float* mx, float* my, float* mz,
-                    float* step_x, float* step_y, float* step_z) {
+void metric_normals(SimdTarget simd, const Metric& metric, ConstFloat3s normal, uint32_t begin,
+                    uint32_t end, Float3s stretched, Float3s step) {
   PLC_DISPATCH(simd, metric_normals)
-  (metric, nx, ny, nz, begin, end, mx, my, mz, step_x, step_y, step_z);
+  (metric, normal, begin, end, stretched, step);
 }
 
 void edge_violations(SimdTarget simd, const RingView& ring, const Float4* position,
@@ -368,9 +364,8 @@ void edge_violations(SimdTarget simd, const RingView& ring, const Float4* positi
 }
 
 void turned_faces(SimdTarget simd, const RingView& ring, const Float4* position,
-                  const Blocks& blocks, const float* nx, const float* ny, const float* nz,
-                  float most, uint8_t* flags) {
-  PLC_DISPATCH(simd, turned_faces)(ring, position, blocks, nx, ny, nz, most, flags);
+                  const Blocks& blocks, ConstFloat3s normal, float most, uint8_t* flags) {
+  PLC_DISPATCH(simd, turned_faces)(ring, position, blocks, normal, most, flags);
 }
 
 double edge_length_sum(SimdTarget simd, const RingView& ring, const Float4* position,

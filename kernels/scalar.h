@@ -8,12 +8,15 @@
 
 #include "kernels/blocks.h"
 #include "kernels/face_pairs.h"
+#include "kernels/gradient_force.h"
 #include "kernels/guided_stage.h"
 #include "kernels/hash_entries.h"
 #include "kernels/image.h"
+#include "kernels/image_force.h"
 #include "kernels/integrate.h"
 #include "kernels/nearby.h"
 #include "kernels/ring.h"
+#include "kernels/ring_forces.h"
 #include "kernels/separable.h"
 #include "kernels/sobel.h"
 #include "kernels/voxels.h"
@@ -50,19 +53,16 @@ float length_sum(const RingView& ring, const Float4* position, const Metric& met
 void laplacian(const RingView& ring, const Float4* position, const Blocks& blocks,
                Float4* laplacian);
 void normals_and_laplacian(const RingView& ring, const Float4* position, const Blocks& blocks,
-                           float* nx, float* ny, float* nz, Float4* laplacian);
+                           Float3s normal, Float4* laplacian);
 void curvature_force(const RingView& ring, const Float4* laplacian, float alpha_c, uint32_t begin,
-                     uint32_t end, float* fx, float* fy, float* fz);
-void spring_force(const RingView& ring, const Float4* position, float alpha_e, float rest_length,
-                  const Metric& metric, uint32_t begin, uint32_t end, float* fx, float* fy,
-                  float* fz);
-void normals(const RingView& ring, const Float4* position, const Blocks& blocks, float* nx,
-             float* ny, float* nz);
-void metric_normals(const Metric& metric, const float* nx, const float* ny, const float* nz,
-                    uint32_t begin, uint32_t end, float* mx, float* my, float* mz, float* step_x,
-                    float* step_y, float* step_z);
+                     uint32_t end, Float3s force);
+void spring_force(const RingView& ring, const Float4* position, const Springs& springs,
+                  uint32_t begin, uint32_t end, Float3s force);
+void normals(const RingView& ring, const Float4* position, const Blocks& blocks, Float3s normal);
+void metric_normals(const Metric& metric, ConstFloat3s normal, uint32_t begin, uint32_t end,
+                    Float3s stretched, Float3s step);
 void turned_faces(const RingView& ring, const Float4* position, const Blocks& blocks,
-                  const float* nx, const float* ny, const float* nz, float most, uint8_t* flags);
+                  ConstFloat3s normal, float most, uint8_t* flags);
 void edge_violations(const RingView& ring, const Float4* position, float min_squared,
                      float max_squared, const Blocks& blocks, uint8_t* flags);
 double edge_length_sum(const RingView& ring, const Float4* position, const Metric& metric,
@@ -71,9 +71,8 @@ double edge_length_sum(const RingView& ring, const Float4* position, const Metri
 // image_force.h
 void sample_trilinear(const ImageView& image, const Float4* position, uint32_t begin, uint32_t end,
                       float* values);
-void iso_force(const ImageView& image, const Float4* position, const float* nx, const float* ny,
-               const float* nz, float coefficient, float iso, uint32_t begin, uint32_t end,
-               float* fx, float* fy, float* fz);
+void iso_force(const ImageView& image, const Float4* position, ConstFloat3s normal,
+               const IsoPull& pull, uint32_t begin, uint32_t end, Float3s force);
 
 // image_rows.h
 void image_rows(const ImageView& image, int64_t z, int64_t first, int64_t end, float* values);
@@ -83,10 +82,8 @@ void blend_rows(const std::array<const float*, 4>& rows, float y, float z, size_
                 float* out);
 
 // gradient_force.h
-void gradient_force(const GradientView& gradient, const Float4* position, const float* nx,
-                    const float* ny, const float* nz, float along_normal, float along_tangent,
-                    const std::array<float, 3>& map, uint32_t begin, uint32_t end, float* fx,
-                    float* fy, float* fz);
+void gradient_force(const GradientView& gradient, const Float4* position, ConstFloat3s normal,
+                    const GradientPull& pull, uint32_t begin, uint32_t end, Float3s force);
 
 // integrate.h
 void rk4_stage(int stage, const Rk4Coefficients& coefficients, const Rk4Streams& streams,
@@ -102,7 +99,7 @@ Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& f
                      const Rk4Streams& streams, const MoveBound& bound, const MoveStreams& ends,
                      const Blocks& blocks);
 void sized_iso_force(const SurfaceForces& forces, const Float4* sizes, uint32_t begin, uint32_t end,
-                     const Float3s& force);
+                     Float3s force);
 
 // nearby.h
 uint32_t near_or_turned(const NearbyView& view, const NearbyQuery& query, uint32_t* hits);
@@ -121,10 +118,9 @@ void normalize_voxels(VoxelType type, const void* voxels, size_t count, double l
 VoxelExtent voxel_extent(VoxelType type, const void* voxels, size_t count);
 
 // separable.h
-void reduce_x(const TapsView& taps, size_t outputs, const float* in, size_t width, size_t in_stride,
-              size_t rows, float* out, size_t out_stride, float* scratch);
-void reduce_y(const TapsView& taps, size_t begin, size_t end, const float* in, size_t in_stride,
-              size_t width, float* out, size_t out_stride);
+void reduce_x(const TapsView& taps, const ConstRows& in, size_t rows, const Rows& out,
+              float* scratch);
+void reduce_y(const TapsView& taps, size_t begin, size_t end, const ConstRows& in, const Rows& out);
 void reduce_z(const float* weights, int32_t taps, const float* const* planes, size_t count,
               float* out);
 

@@ -129,15 +129,15 @@ void sample_trilinear(const ImageView& image, const Float4* position, uint32_t b
   });
 }
 
-void iso_force(const ImageView& image, const Float4* position, const float* nx, const float* ny,
-               const float* nz, float coefficient, float iso, uint32_t begin, uint32_t end,
-               float* fx, float* fy, float* fz) {
+void iso_force(const ImageView& image, const Float4* position, ConstFloat3s normal,
+               const IsoPull& pull, uint32_t begin, uint32_t end, Float3s force) {
   with_voxel_type(image.form.type, [&](auto voxel) {
     for (uint32_t i = begin; i < end; ++i) {
-      const float push = coefficient * (iso - sample<decltype(voxel)>(image, position[i]));
-      fx[i] += push * nx[i];
-      fy[i] += push * ny[i];
-      fz[i] += push * nz[i];
+      const float push =
+          pull.coefficient * (pull.iso - sample<decltype(voxel)>(image, position[i]));
+      force.x[i] += push * normal.x[i];
+      force.y[i] += push * normal.y[i];
+      force.z[i] += push * normal.z[i];
     }
   });
 }
@@ -153,20 +153,18 @@ void blend_rows(const std::array<const float*, 4>& rows, float y, float z, size_
   }
 }
 
-void gradient_force(const GradientView& gradient, const Float4* position, const float* nx,
-                    const float* ny, const float* nz, float along_normal, float along_tangent,
-                    const std::array<float, 3>& map, uint32_t begin, uint32_t end, float* fx,
-                    float* fy, float* fz) {
+void gradient_force(const GradientView& gradient, const Float4* position, ConstFloat3s normal,
+                    const GradientPull& pull, uint32_t begin, uint32_t end, Float3s force) {
   for (uint32_t i = begin; i < end; ++i) {
     const Triple g = sample(gradient, position[i]);
-    const float along = g.x * nx[i] + g.y * ny[i] + g.z * nz[i];
-    const auto pull = [&](float own, float normal) {
-      const float normal_part = normal * along;
-      return normal_part * along_normal + (own - normal_part) * along_tangent;
+    const float along = g.x * normal.x[i] + g.y * normal.y[i] + g.z * normal.z[i];
+    const auto pulled = [&](float own, float n) {
+      const float normal_part = n * along;
+      return normal_part * pull.along_normal + (own - normal_part) * pull.along_tangent;
     };
-    fx[i] += pull(g.x, nx[i]) * map[0];
-    fy[i] += pull(g.y, ny[i]) * map[1];
-    fz[i] += pull(g.z, nz[i]) * map[2];
+    force.x[i] += pulled(g.x, normal.x[i]) * pull.map[0];
+    force.y[i] += pulled(g.y, normal.y[i]) * pull.map[1];
+    force.z[i] += pulled(g.z, normal.z[i]) * pull.map[2];
   }
 }
 
@@ -202,23 +200,26 @@ VoxelExtent voxel_extent(VoxelType type, const void* voxels, size_t count) {
   return {};
 }
 
-void reduce_x(const TapsView& taps, size_t outputs, const float* in, size_t /*width*/,
-              size_t in_stride, size_t rows, float* out, size_t out_stride, float* /*scratch*/) {
+void reduce_x(const TapsView& taps, const ConstRows& in, size_t rows, const Rows& out,
+              float* /*scratch*/) {
   for (size_t r = 0; r < rows; ++r) {
-    for (size_t i = 0; i < outputs; ++i) {
-      out[r * out_stride + i] = weighted_sum(taps.weights + i * static_cast<size_t>(taps.taps),
-                                             taps.taps, in + r * in_stride + taps.first[i], 1);
+    for (size_t i = 0; i < out.width; ++i) {
+      out.values[r * out.stride + i] =
+          weighted_sum(taps.weights + i * static_cast<size_t>(taps.taps), taps.taps,
+                       in.values + r * in.stride + taps.first[i], 1);
     }
   }
 }
 
-void reduce_y(const TapsView& taps, size_t begin, size_t end, const float* in, size_t in_stride,
-              size_t width, float* out, size_t out_stride) {
+void reduce_y(const TapsView& taps, size_t begin, size_t end, const ConstRows& in,
+              const Rows& out) {
   for (size_t j = begin; j < end; ++j) {
-    const float* row = in + static_cast<size_t>(taps.first[j] - taps.first[begin]) * in_stride;
+    const float* row =
+        in.values + static_cast<size_t>(taps.first[j] - taps.first[begin]) * in.stride;
     const float* weights = taps.weights + j * static_cast<size_t>(taps.taps);
-    for (size_t i = 0; i < width; ++i) {
-      out[(j - begin) * out_stride + i] = weighted_sum(weights, taps.taps, row + i, in_stride);
+    for (size_t i = 0; i < in.width; ++i) {
+      out.values[(j - begin) * out.stride + i] =
+          weighted_sum(weights, taps.taps, row + i, in.stride);
     }
   }
 }

@@ -223,7 +223,7 @@ Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& f
 }
 
 void sized_iso_force(const SurfaceForces& forces, const Float4* sizes, uint32_t begin, uint32_t end,
-                     const Float3s& force) {
+                     Float3s force) {
   for (uint32_t first = begin; first < end; first += kRingLanes) {
     float values[kRingLanes];
     block_values(forces, sizes, first, values);

@@ -129,67 +129,64 @@ void laplacian(const RingView& ring, const Float4* position, const Blocks& block
 }
 
 void normals_and_laplacian(const RingView& ring, const Float4* position, const Blocks& blocks,
-                           float* nx, float* ny, float* nz, Float4* laplacian) {
-  normals(ring, position, blocks, nx, ny, nz);
+                           Float3s normal, Float4* laplacian) {
+  normals(ring, position, blocks, normal);
   scalar::laplacian(ring, position, blocks, laplacian);
 }
 
 void curvature_force(const RingView& ring, const Float4* laplacian, float alpha_c, uint32_t begin,
-                     uint32_t end, float* fx, float* fy, float* fz) {
+                     uint32_t end, Float3s force) {
   for (uint32_t v = begin; v < end; ++v) {
     const Triple sum = record_sum(ring, laplacian, v);
     const float inverse = inverse_valence(ring, v);
     const bool alive = ring.valence[v] != 0;
-    fx[v] = alive ? (laplacian[v].x - sum.x * inverse) * alpha_c : 0.0F;
-    fy[v] = alive ? (laplacian[v].y - sum.y * inverse) * alpha_c : 0.0F;
-    fz[v] = alive ? (laplacian[v].z - sum.z * inverse) * alpha_c : 0.0F;
+    force.x[v] = alive ? (laplacian[v].x - sum.x * inverse) * alpha_c : 0.0F;
+    force.y[v] = alive ? (laplacian[v].y - sum.y * inverse) * alpha_c : 0.0F;
+    force.z[v] = alive ? (laplacian[v].z - sum.z * inverse) * alpha_c : 0.0F;
   }
 }
 
-void spring_force(const RingView& ring, const Float4* position, float alpha_e, float rest_length,
-                  const Metric& metric, uint32_t begin, uint32_t end, float* fx, float* fy,
-                  float* fz) {
+void spring_force(const RingView& ring, const Float4* position, const Springs& springs,
+                  uint32_t begin, uint32_t end, Float3s force) {
   for (uint32_t v = begin; v < end; ++v) {
-    const Triple sum = spring_sum(ring, position, rest_length, metric, v);
-    fx[v] = fx[v] + alpha_e * sum.x;
-    fy[v] = fy[v] + alpha_e * sum.y;
-    fz[v] = fz[v] + alpha_e * sum.z;
+    const Triple sum = spring_sum(ring, position, springs.rest_length, springs.metric, v);
+    force.x[v] = force.x[v] + springs.alpha * sum.x;
+    force.y[v] = force.y[v] + springs.alpha * sum.y;
+    force.z[v] = force.z[v] + springs.alpha * sum.z;
   }
 }
 
-void normals(const RingView& ring, const Float4* position, const Blocks& blocks, float* nx,
-             float* ny, float* nz) {
+void normals(const RingView& ring, const Float4* position, const Blocks& blocks, Float3s normal) {
   for_vertices(blocks, [&](uint32_t v) {
     const Triple sum = normal_sum(ring, position, v);
     const float length = std::sqrt(squared(sum));
     const float inverse = length > 0.0F ? 1.0F / length : 0.0F;
-    nx[v] = sum.x * inverse;
-    ny[v] = sum.y * inverse;
-    nz[v] = sum.z * inverse;
+    normal.x[v] = sum.x * inverse;
+    normal.y[v] = sum.y * inverse;
+    normal.z[v] = sum.z * inverse;
   });
 }
 
-void metric_normals(const Metric& metric, const float* nx, const float* ny, const float* nz,
-                    uint32_t begin, uint32_t end, float* mx, float* my, float* mz, float* step_x,
-                    float* step_y, float* step_z) {
+void metric_normals(const Metric& metric, ConstFloat3s normal, uint32_t begin, uint32_t end,
+                    Float3s stretched, Float3s step) {
   const Triple inverse{1.0F / metric.x, 1.0F / metric.y, 1.0F / metric.z};
   for (uint32_t v = begin; v < end; ++v) {
-    const Triple k{nx[v] * inverse.x, ny[v] * inverse.y, nz[v] * inverse.z};
+    const Triple k{normal.x[v] * inverse.x, normal.y[v] * inverse.y, normal.z[v] * inverse.z};
     const float length = std::sqrt(squared(k));
     const float unit = length > 0.0F ? 1.0F / length : 0.0F;
-    mx[v] = k.x * unit;
-    my[v] = k.y * unit;
-    mz[v] = k.z * unit;
-    step_x[v] = mx[v] * inverse.x;
-    step_y[v] = my[v] * inverse.y;
-    step_z[v] = mz[v] * inverse.z;
+    stretched.x[v] = k.x * unit;
+    stretched.y[v] = k.y * unit;
+    stretched.z[v] = k.z * unit;
+    step.x[v] = stretched.x[v] * inverse.x;
+    step.y[v] = stretched.y[v] * inverse.y;
+    step.z[v] = stretched.z[v] * inverse.z;
   }
 }
 
 void turned_faces(const RingView& ring, const Float4* position, const Blocks& blocks,
-                  const float* nx, const float* ny, const float* nz, float most, uint8_t* flags) {
+                  ConstFloat3s normal, float most, uint8_t* flags) {
   for_vertices(blocks, [&](uint32_t v) {
-    flags[v] = turned_flag(ring, position, {nx[v], ny[v], nz[v]}, most, v);
+    flags[v] = turned_flag(ring, position, {normal.x[v], normal.y[v], normal.z[v]}, most, v);
   });
 }
 

@@ -29,13 +29,15 @@ struct RowQuads {
   }
 };
 
-// Columns of up to kLanes rows: value c of row l goes to columns[c * kLanes + l]. Lanes past the
-// last row repeat it.
-HWY_INLINE void transpose_rows(const float* in, size_t width, size_t in_stride, size_t rows,
-                               float* columns) {
+// Columns of up to kLanes rows from the first on: value c of row l goes to columns[c * kLanes + l].
+// Lanes past the last row repeat it.
+HWY_INLINE void transpose_rows(const ConstRows& in, size_t first, size_t rows, float* columns) {
+  const size_t width = in.width;
   const FloatTag d;
   const float* row[kLanes];
-  for (size_t l = 0; l < kLanes; ++l) row[l] = in + std::min(l, rows - 1) * in_stride;
+  for (size_t l = 0; l < kLanes; ++l) {
+    row[l] = in.values + (first + std::min(l, rows - 1)) * in.stride;
+  }
   if (width < 4) {
     for (size_t c = 0; c < width; ++c) {
       for (size_t l = 0; l < kLanes; ++l) columns[c * kLanes + l] = row[l][c];
@@ -65,8 +67,8 @@ HWY_INLINE Floats sum_columns(const float* weights, const float* columns) {
 
 // Lanes are rows, so that the irregular places of the taps are the same for all lanes.
 template <int32_t kTaps>
-void reduce_x_taps(const TapsView& taps, size_t outputs, const float* columns, size_t rows,
-                   float* out, size_t out_stride) {
+void reduce_x_taps(const TapsView& taps, const float* columns, size_t rows, Rows out) {
+  const size_t outputs = out.width;
   const FloatTag d;
   const QuadTag d4;
   for (size_t i = 0; i < outputs; i += 4) {
@@ -80,38 +82,38 @@ void reduce_x_taps(const TapsView& taps, size_t outputs, const float* columns, s
     hn::StoreInterleaved4(sum[0], sum[1], sum[2], sum[3], d, quad);
     for (size_t r = 0; r < rows; ++r) {
       if (count == 4) {
-        hn::StoreU(hn::Load(d4, quad + 4 * r), d4, out + r * out_stride + i);
+        hn::StoreU(hn::Load(d4, quad + 4 * r), d4, out.values + r * out.stride + i);
       } else {
-        std::copy_n(quad + 4 * r, count, out + r * out_stride + i);
+        std::copy_n(quad + 4 * r, count, out.values + r * out.stride + i);
       }
     }
   }
 }
 
-void reduce_x(const TapsView& taps, size_t outputs, const float* in, size_t width, size_t in_stride,
-              size_t rows, float* out, size_t out_stride, float* scratch) {
+void reduce_x(const TapsView& taps, const ConstRows& in, size_t rows, const Rows& out,
+              float* scratch) {
   for (size_t r = 0; r < rows; r += kLanes) {
     const size_t some = std::min<size_t>(kLanes, rows - r);
-    float* to = out + r * out_stride;
-    transpose_rows(in + r * in_stride, width, in_stride, some, scratch);
+    const Rows to{out.values + r * out.stride, out.width, out.stride};
+    transpose_rows(in, r, some, scratch);
     switch (taps.taps) {
       case 1:
-        reduce_x_taps<1>(taps, outputs, scratch, some, to, out_stride);
+        reduce_x_taps<1>(taps, scratch, some, to);
         break;
       case 2:
-        reduce_x_taps<2>(taps, outputs, scratch, some, to, out_stride);
+        reduce_x_taps<2>(taps, scratch, some, to);
         break;
       case 3:
-        reduce_x_taps<3>(taps, outputs, scratch, some, to, out_stride);
+        reduce_x_taps<3>(taps, scratch, some, to);
         break;
       case 4:
-        reduce_x_taps<4>(taps, outputs, scratch, some, to, out_stride);
+        reduce_x_taps<4>(taps, scratch, some, to);
         break;
       case 5:
-        reduce_x_taps<5>(taps, outputs, scratch, some, to, out_stride);
+        reduce_x_taps<5>(taps, scratch, some, to);
         break;
       default:
-        reduce_x_taps<6>(taps, outputs, scratch, some, to, out_stride);
+        reduce_x_taps<6>(taps, scratch, some, to);
         break;
     }
   }
@@ -159,15 +161,15 @@ HWY_INLINE void sum_rows(const float* weights, int32_t taps, const float* const*
   }
 }
 
-void reduce_y(const TapsView& taps, size_t begin, size_t end, const float* in, size_t in_stride,
-              size_t width, float* out, size_t out_stride) {
+void reduce_y(const TapsView& taps, size_t begin, size_t end, const ConstRows& in,
+              const Rows& out) {
   for (size_t j = begin; j < end; ++j) {
     const float* rows[kMaxTaps];
     for (int32_t k = 0; k < taps.taps; ++k) {
-      rows[k] = in + static_cast<size_t>(taps.first[j] - taps.first[begin] + k) * in_stride;
+      rows[k] = in.values + static_cast<size_t>(taps.first[j] - taps.first[begin] + k) * in.stride;
     }
-    sum_rows<false>(taps.weights + j * static_cast<size_t>(taps.taps), taps.taps, rows, width,
-                    out + (j - begin) * out_stride);
+    sum_rows<false>(taps.weights + j * static_cast<size_t>(taps.taps), taps.taps, rows, in.width,
+                    out.values + (j - begin) * out.stride);
   }
 }
 
@@ -189,15 +191,15 @@ HWY_EXPORT(reduce_x);
 HWY_EXPORT(reduce_y);
 HWY_EXPORT(reduce_z);
 
-void reduce_x(SimdTarget simd, const TapsView& taps, size_t outputs, const float* in, size_t width,
-              size_t in_stride, size_t rows, float* out, size_t out_stride, float* scratch) {
+void reduce_x(SimdTarget simd, const TapsView& taps, const ConstRows& in, size_t rows,
+              const Rows& out, float* scratch) {
   PLC_DISPATCH(simd, reduce_x)
-  (taps, outputs, in, width, in_stride, rows, out, out_stride, scratch);
+  (taps, in, rows, out, scratch);
 }
 
-void reduce_y(SimdTarget simd, const TapsView& taps, size_t begin, size_t end, const float* in,
-              size_t in_stride, size_t width, float* out, size_t out_stride) {
-  PLC_DISPATCH(simd, reduce_y)(taps, begin, end, in, in_stride, width, out, out_stride);
+void reduce_y(SimdTarget simd, const TapsView& taps, size_t begin, size_t end, const ConstRows& in,
+              const Rows& out) {
+  PLC_DISPATCH(simd, reduce_y)(taps, begin, end, in, out);
 }
 
 void reduce_z(SimdTarget simd, const float* weights, int32_t taps, const float* const* planes,

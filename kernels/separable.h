@@ -20,20 +20,29 @@ struct TapsView {
   int32_t taps = 0;  // 1 .. kMaxTaps
 };
 
+// Rows of `width` values, `stride` floats apart.
+struct ConstRows {
+  const float* values;
+  size_t width, stride;
+};
+struct Rows {
+  float* values;
+  size_t width, stride;
+};
+
 // Floats of scratch that reduce_x needs for rows of `width` values.
 constexpr size_t reduce_x_scratch(size_t width) {
   return width * 16;
 }
 
-// Along X: row r of `out` (r < rows, `outputs` values, `out_stride` floats apart) from row r of
-// `in` (`width` values, `in_stride` apart). `scratch` is 64-byte aligned.
-void reduce_x(SimdTarget simd, const TapsView& taps, size_t outputs, const float* in, size_t width,
-              size_t in_stride, size_t rows, float* out, size_t out_stride, float* scratch);
+// Along X: row r of `out` from row r of `in`, r < rows. `scratch` is 64-byte aligned.
+void reduce_x(SimdTarget simd, const TapsView& taps, const ConstRows& in, size_t rows,
+              const Rows& out, float* scratch);
 
-// Along Y: row j of `out`, j = begin .. end-1, from whole rows of `width` values. `in` points at
-// input row first[begin], `out` at output row begin.
-void reduce_y(SimdTarget simd, const TapsView& taps, size_t begin, size_t end, const float* in,
-              size_t in_stride, size_t width, float* out, size_t out_stride);
+// Along Y: output rows begin .. end-1 from whole rows of the same width. `in` starts at input row
+// first[begin], `out` at output row begin.
+void reduce_y(SimdTarget simd, const TapsView& taps, size_t begin, size_t end, const ConstRows& in,
+              const Rows& out);
 
 // Along Z, the last axis: out[i] = sum of weights[k] * planes[k][i], i < count, limited to 1 (the
 // rounded weights may add up to a little more).

@@ -8,6 +8,7 @@
 #endif
 
 #include "hwy/highway.h"
+#include "kernels/float3s.h"
 #include "kernels/ring.h"
 
 // The target without vectors, which Highway always compiles as the last resort: there the kernels
@@ -82,6 +83,13 @@ HWY_INLINE void store3(const Floats3& a, float* x, float* y, float* z, uint32_t 
   hn::StoreU(a.x, d, x + i);
   hn::StoreU(a.y, d, y + i);
   hn::StoreU(a.z, d, z + i);
+}
+template <class Streams>
+HWY_INLINE Floats3 load3(const Streams& s, uint32_t i) {
+  return load3(s.x, s.y, s.z, i);
+}
+HWY_INLINE void store3(const Floats3& a, const Float3s& s, uint32_t i) {
+  store3(a, s.x, s.y, s.z, i);
 }
 HWY_INLINE void store_packed(const Floats3& a, Floats w, Float4* to) {
   hn::StoreInterleaved4(a.x, a.y, a.z, w, FloatTag(), &to->x);

@@ -29,11 +29,6 @@ inline void copy_mesh(const plc::Mesh& from, plc::Mesh& to) {
     to.normal.set(w, from.normal.at(v));
     to.displacement.set(w, from.displacement.at(v));
     to.path[w] = from.path[v];
-    to.idle[w] = from.idle[v];
-    to.calm[w] = from.calm[v];
-    to.drift[w] = from.drift[v];
-    to.risk[w] = from.risk[v];
-    to.operations[w] = from.operations[v];
     to.cut_id[w] = from.cut_id[v];
     to.cut_iteration[w] = from.cut_iteration[v];
   }

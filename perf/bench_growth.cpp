@@ -32,6 +32,8 @@ constexpr double kDelta = 1 / 1.2;    // voxels
 constexpr double kStartCell = 2.7;    // the iso-surface of such a lattice has as many vertices
 constexpr int kStartIterations = 25;  // until the edges are those of an evolution
 const plc::SimdTarget kSimd = plc::best_simd_target();
+// With the time step that the published results are of.
+constexpr plc::Model kModel{.time_step = 1};
 
 [[noreturn]] void fail(const std::string& what) {
   std::fprintf(stderr, "bench_growth: %s\n", what.c_str());
@@ -69,7 +71,6 @@ void forget_peak() {
 struct Vertex {
   plc::Vec3 position, velocity, normal;
   uint32_t valence;
-  uint8_t risk;
 };
 
 template <typename T>
@@ -86,8 +87,7 @@ void write_mesh(const plc::Mesh& mesh, std::FILE* file) {
   const uint32_t count = mesh.slots();
   put(file, &count, 1);
   for (uint32_t v = 0; v < count; ++v) {
-    const Vertex vertex{mesh.at(v), mesh.velocity.at(v), mesh.normal.at(v), mesh.valence(v),
-                        mesh.risk[v]};
+    const Vertex vertex{mesh.at(v), mesh.velocity.at(v), mesh.normal.at(v), mesh.valence(v)};
     put(file, &vertex, 1);
     for (uint32_t k = 0; k < vertex.valence; ++k) {
       const uint32_t w = mesh.neighbor(v, k);
@@ -105,7 +105,6 @@ void read_mesh(std::FILE* file, plc::Mesh& mesh) {
     get(file, &vertex, 1);
     const uint32_t v = mesh.create(vertex.position, vertex.velocity);
     mesh.normal.set(v, vertex.normal);
-    mesh.risk[v] = vertex.risk;
     plc::Neighbors ring;
     for (uint32_t k = 0; k < vertex.valence; ++k) {
       uint32_t w = 0;
@@ -126,7 +125,7 @@ void make_surface(const bench::Potential& potential, const plc::Guide& guide, in
   demand(plc::iso_surface({potential.view(lattice, kStartCell), bench::Potential::kIso, true},
                           schedule, mesh));
   mesh.renumber(plc::morton_order(mesh));
-  plc::Evolution evolution(mesh, schedule, kSimd, plc::Model());
+  plc::Evolution evolution(mesh, schedule, kSimd, kModel);
   evolution.restart();
   plc::Seconds seconds;
   plc::OperationCounts counts;
@@ -174,7 +173,7 @@ void measure(const plc::Guide& guide, int threads, int iterations, std::FILE* fi
   plc::Mesh mesh;
   read_mesh(file, mesh);
   const uint32_t vertices = mesh.vertex_count();
-  plc::Evolution evolution(mesh, schedule, kSimd, plc::Model());
+  plc::Evolution evolution(mesh, schedule, kSimd, kModel);
   evolution.restart();
   std::vector<Sample> samples;
   int64_t peak = 0;

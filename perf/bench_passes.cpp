@@ -180,7 +180,7 @@ void add_dynamics(Suite& suite, const Mesh& start) {
 void search_all(plc::Detection& detection) {
   detection.list_all();
   detection.update_hash();
-  detection.search({});
+  detection.search();
 }
 
 // Constraints (1) to (3) of every vertex. What the motion guard looks for, too, after a movement is

@@ -60,8 +60,8 @@ struct Scratch {
 void reduce_rows(const Reduction& r, size_t z, size_t y, size_t y_end, Scratch& scratch) {
   const size_t width = r.in_dims[0];
   const auto reduce = [&](const float* from, size_t rows, float* to) {
-    kernels::reduce_x(r.simd, r.taps[0], r.out_dims[0], from, width, width, rows, to, r.out_dims[0],
-                      scratch.columns.data());
+    kernels::reduce_x(r.simd, r.taps[0], {from, width, width}, rows,
+                      {to, r.out_dims[0], r.out_dims[0]}, scratch.columns.data());
   };
   if (r.in.form.type == ImageType::kUnit) {
     const auto* voxels = static_cast<const float*>(r.in.data);
@@ -80,8 +80,9 @@ void reduce_rows(const Reduction& r, size_t z, size_t y, size_t y_end, Scratch& 
 void reduce_plane(const Reduction& r, const Tile& tile, size_t z, Scratch& scratch,
                   float* reduced) {
   reduce_rows(r, z, r.first_input(1, tile.row), r.end_input(1, tile.row_end), scratch);
-  kernels::reduce_y(r.simd, r.taps[1], tile.row, tile.row_end, scratch.rows.data(), r.out_dims[0],
-                    r.out_dims[0], reduced, r.out_dims[0]);
+  const size_t width = r.out_dims[0];
+  kernels::reduce_y(r.simd, r.taps[1], tile.row, tile.row_end, {scratch.rows.data(), width, width},
+                    {reduced, width, width});
 }
 
 void reduce_tile(const Reduction& r, const Tile& tile) {

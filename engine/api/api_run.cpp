@@ -246,7 +246,7 @@ std::unique_ptr<plc_surface> Run::surface() const {
   const MemoryScope scope(host_->memory);
   auto copy = std::make_unique<plc_surface>();
   copy->host = host_;
-  copy->mesh = surface_->mesh.copy();
+  copy->mesh.take(surface_->mesh.copy());
   copy->mesh.sizing = nullptr;  // the run's own
   if (!copy->mesh.in_order()) {
     copy->mesh.renumber(morton_order(copy->mesh, host_->schedule), host_->schedule);

@@ -7,7 +7,8 @@
 #include <cstddef>
 #include <cstring>
 
-#include "engine/base/constants.h"
+#include "engine/base/defaults.h"
+#include "pyramid/pyramid.h"
 
 namespace plc {
 
@@ -87,32 +88,32 @@ constexpr plc_parameter_info kList[] = {
     choice(FIELD(feature), PLC_FEATURE_NONE, PLC_FEATURE_NONE, "a plc_feature", kFeatures),
     real(FIELD(feature_sigma), 0, 0, kMost, "0 .. 1e6 mm"),
     count(FIELD(levels), -1, -1, PLC_MAX_LEVELS - 1, "0 .. 31"),
-    real(FIELD(reduction), kRefinement, kAboveOne, 2, "above 1 and at most 2"),
+    real(FIELD(reduction), PyramidSpec{}.reduction, kAboveOne, 2, "above 1 and at most 2"),
     choice(FIELD(init), PLC_INIT_BUBBLE, PLC_INIT_BUBBLE, "a plc_init", kInits),
     count({"bubbles", offsetof(plc_parameters, bubbles), 3}, 1, 1, 256, "1 .. 256 per axis"),
     choice(FIELD(mesh), PLC_MESH_UNIFORM, PLC_MESH_UNIFORM, "a plc_mesh_kind", kMeshes),
     real(FIELD(tolerance), 0, 0, kMost, "0 .. 1e6 mm"),
     real(FIELD(edge_min), 0, 0, kMost, "0 .. 1e6 mm"),
     real(FIELD(edge_max), 0, 0, kMost, "0 .. 1e6 mm"),
-    coefficient(FIELD(curvature), 0.4),
-    coefficient(FIELD(spring), 0),
+    coefficient(FIELD(curvature), defaults::kCurvature),
+    coefficient(FIELD(spring), defaults::kSpring),
     choice(FIELD(rest_length), PLC_REST_MEAN, PLC_REST_ZERO, "a plc_rest_length", kRestLengths),
-    coefficient(FIELD(rest_length_value), 1.5),
+    coefficient(FIELD(rest_length_value), defaults::kRestLength),
     choice(FIELD(force), PLC_FORCE_ISO, PLC_FORCE_ISO, "a plc_force", kForces),
-    positive(FIELD(attraction), 1),
+    positive(FIELD(attraction), defaults::kAttraction),
     either_sign(FIELD(gradient), 0.5),
     either_sign(FIELD(gradient_tangent), 0),
-    positive(FIELD(gradient_bound), 0.1),
-    positive(FIELD(mass), 1),
-    coefficient(FIELD(damping), 0.5),
-    positive(FIELD(time_step), 1.5),
-    real(FIELD(max_move), 0.4, kAboveZero, 1, "above 0 and at most 1 delta"),
+    positive(FIELD(gradient_bound), defaults::kGradientBound),
+    positive(FIELD(mass), defaults::kMass),
+    coefficient(FIELD(damping), defaults::kDamping),
+    positive(FIELD(time_step), defaults::kTimeStep),
+    real(FIELD(max_move), defaults::kMaxMove, kAboveZero, 1, "above 0 and at most 1 delta"),
     choice(FIELD(bound), PLC_BOUND_CLAMP, PLC_BOUND_CLAMP, "a plc_bound", kBounds),
     choice(FIELD(anisotropy), PLC_ANISOTROPY_VOXEL, PLC_ANISOTROPY_PHYSICAL, "a plc_anisotropy",
            kAnisotropies),
-    real(FIELD(epsilon), 5e-6, kAboveZero, 1, "above 0 and at most 1"),
-    coefficient(FIELD(calm_speed), 0),
-    count(FIELD(max_iterations), 500, 1, INT_MAX, "at least 1"),
+    real(FIELD(epsilon), defaults::kEpsilon, kAboveZero, 1, "above 0 and at most 1"),
+    coefficient(FIELD(calm_speed), defaults::kCalmSpeed),
+    count(FIELD(max_iterations), defaults::kMaxIterations, 1, INT_MAX, "at least 1"),
     flag(FIELD(late_bubbles), 1),
     flag(FIELD(sleeping), 1),
 };

@@ -134,7 +134,7 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
   if (Status s = check_surroundings(p); !s.ok()) return s;
   const int deepest = max_levels(padded_dims(volume.dims, kPadVoxels), p.reduction);
   if (p.levels < 0 && p.level_iso_count > 0) p.levels = p.level_iso_count - 1;
-  if (p.levels < 0) p.levels = std::min(3, deepest);
+  if (p.levels < 0) p.levels = std::min(PyramidSpec{}.levels, deepest);
   return {};
 }
 

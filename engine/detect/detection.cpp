@@ -16,8 +16,8 @@ void Detection::list_due() {
   all_due_ = false;
 }
 
-void Detection::list_due(const Vector<uint32_t>& awake) {
-  due_.list_due(awake);
+void Detection::list_due(const Vector<uint32_t>& awake, const VertexBytes& calm) {
+  due_.list_due(awake, calm);
   all_due_ = false;
 }
 

@@ -21,16 +21,19 @@ class Detection {
 
   // Three steps, in this order. First the vertices that are due are listed, of all or of those of
   // these blocks of kRingLanes, ascending (sleep.h), or every vertex is; their periods start anew.
+  // calm: for how long each vertex has been calm.
   void list_due();
-  void list_due(const Vector<uint32_t>& awake);
+  void list_due(const Vector<uint32_t>& awake, const VertexBytes& calm);
   void list_all();
   // Enters them where they are now.
   void update_hash();
-  // What is around them; and, for the motion guard, around vertices that may not be due but are
-  // newly folded.
-  void search(const Vector<uint32_t>& folded) {
-    surroundings_.search(due(), hash_);
-    surroundings_.search_folded(folded, hash_);
+  // What is around them.
+  void search() { surroundings_.search(due(), hash_); }
+  // The same for the motion guard: around vertices, too, that may not be due but are newly folded.
+  // risk: of all vertices (risk.h).
+  void search(const VertexBytes& risk, const Vector<uint32_t>& folded) {
+    surroundings_.search(due(), hash_, &risk);
+    surroundings_.search_folded(folded, hash_, risk);
   }
 
   // The three for the constraints of all vertices only: nothing has moved, or will be asked of the
@@ -39,6 +42,15 @@ class Detection {
 
   // Ascending.
   const Vector<uint32_t>& due() const { return due_.list(); }
+  // For how long the constraints of each vertex have not been checked: all that outlives a pass.
+  const VertexBytes& idle() const { return due_.idle(); }
+  void save(StateWriter& to) const { due_.save(to); }
+  // After that of the mesh. The hash is built anew: what it finds does not depend on when it was
+  // built.
+  void restore(StateReader& from) {
+    restart();
+    due_.restore(from);
+  }
   const Surroundings& surroundings() const { return surroundings_; }
   // Holds every living vertex; who moves, makes or deletes one tells it.
   SpatialHash& hash() { return hash_; }

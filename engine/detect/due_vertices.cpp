@@ -11,15 +11,15 @@
 namespace plc {
 
 void DueVertices::list_due() {
-  list(all_blocks(), false);
+  list(all_blocks(), nullptr, false);
 }
 
-void DueVertices::list_due(const Vector<uint32_t>& blocks) {
-  list(blocks, false);
+void DueVertices::list_due(const Vector<uint32_t>& blocks, const VertexBytes& calm) {
+  list(blocks, &calm, false);
 }
 
 void DueVertices::list_all() {
-  list(all_blocks(), true);
+  list(all_blocks(), nullptr, true);
 }
 
 const Vector<uint32_t>& DueVertices::all_blocks() {
@@ -28,12 +28,14 @@ const Vector<uint32_t>& DueVertices::all_blocks() {
   return blocks_;
 }
 
-void DueVertices::list(const Vector<uint32_t>& blocks, bool all) {
+void DueVertices::list(const Vector<uint32_t>& blocks, const VertexBytes* calm, bool all) {
+  constexpr uint8_t kRestless[kRingLanes] = {};
   lanes_.resize(blocks.size());
   first_due_.assign(block_count(blocks.size(), kTaskBlocks) + 1, 0);
   run_blocks(executor_, blocks.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      lanes_[i] = due_lanes(blocks[i] * kRingLanes, all);
+      const uint32_t first = blocks[i] * kRingLanes;
+      lanes_[i] = due_lanes(first, calm == nullptr ? kRestless : calm->data() + first, all);
       first_due_[task + 1] += static_cast<uint32_t>(std::popcount(lanes_[i]));
     }
   });
@@ -46,7 +48,7 @@ void DueVertices::list(const Vector<uint32_t>& blocks, bool all) {
         const uint32_t v = blocks[i] * kRingLanes + static_cast<uint32_t>(std::countr_zero(lanes));
         mesh_.path[v] = 0;
         mesh_.resize(v);
-        mesh_.idle[v] = 0;
+        idle_[v] = 0;
         *next++ = v;
       }
     }
@@ -54,12 +56,11 @@ void DueVertices::list(const Vector<uint32_t>& blocks, bool all) {
 }
 
 // Of a block; counts the periods of the others.
-uint16_t DueVertices::due_lanes(uint32_t first, bool all) {
+uint16_t DueVertices::due_lanes(uint32_t first, const uint8_t* calm, bool all) {
   const float far = all ? 0 : kCheckPath * static_cast<float>(mesh_.delta);
   const Float4* const position = &mesh_.position[first];
   const float* const path = &mesh_.path[first];
-  const uint8_t* const calm = &mesh_.calm[first];
-  uint8_t* const idle = &mesh_.idle[first];
+  uint8_t* const idle = &idle_[first];
   const uint16_t* const valence = mesh_.rings().valence + first;
   int32_t due[kRingLanes];
   for (uint32_t k = 0; k < kRingLanes; ++k) {

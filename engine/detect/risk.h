@@ -21,6 +21,9 @@
 
 namespace plc {
 
+// A vertex's flags: something is near; the surface folds around it.
+inline constexpr uint8_t kNearRisk = 1, kFoldRisk = 2;
+
 // Stars of larger valence are not looked at closely: at risk. One bit per vertex of a star.
 inline constexpr uint32_t kRiskRing = 31;
 

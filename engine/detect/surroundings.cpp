@@ -45,14 +45,18 @@ class ClosedRing {
 
 }  // namespace
 
-void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash) {
+void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash,
+                          const VertexBytes* risk) {
+  risk_ = risk;
   const size_t tasks = search(due, hash, Wanted::kNearAndRisk);
   gather_near(tasks);
   at_risk_.clear();
   gather_at_risk(tasks);
 }
 
-void Surroundings::search_folded(const Vector<uint32_t>& folded, const SpatialHash& hash) {
+void Surroundings::search_folded(const Vector<uint32_t>& folded, const SpatialHash& hash,
+                                 const VertexBytes& risk) {
+  risk_ = &risk;
   if (!folded.empty()) gather_at_risk(search(folded, hash, Wanted::kNearAndRisk));
 }
 
@@ -129,7 +133,7 @@ size_t Surroundings::group_size(const uint32_t* due, size_t count, Vec3& low, Ve
 // does not tell of the faces that are turned over: without one all that is near counts as turned,
 // as the cosine of 0 is below kRiskDot.
 Vec3 Surroundings::sheet_normal(uint32_t v) const {
-  return (mesh_.risk[v] & Mesh::kFoldRisk) != 0 ? Vec3{} : mesh_.normal.at(v);
+  return risk_ != nullptr && ((*risk_)[v] & kFoldRisk) != 0 ? Vec3{} : mesh_.normal.at(v);
 }
 
 // The places of what is around, and the normals where they are wanted.

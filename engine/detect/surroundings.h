@@ -6,6 +6,7 @@
 #include "engine/base/spares.h"
 #include "engine/detect/spatial_hash.h"
 #include "engine/mesh/mesh.h"
+#include "engine/mesh/vertex_bytes.h"
 #include "kernels/simd.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
@@ -30,11 +31,14 @@ class Surroundings {
       : mesh_(mesh), executor_(executor), simd_(simd) {}
 
   // due: ascending. The hash holds every living vertex. Normals are those of mesh.normal; a vertex
-  // that the surface folds around (Mesh::kFoldRisk) has none.
-  void search(const Vector<uint32_t>& due, const SpatialHash& hash);
+  // that the surface folds around has none. risk: the flags of risk.h, known for all vertices;
+  // null: the surface folds nowhere.
+  void search(const Vector<uint32_t>& due, const SpatialHash& hash,
+              const VertexBytes* risk = nullptr);
   // Only the risk, of vertices around which the surface folds since the last movement: what is at
   // risk with them is added to what search() has found. folded: ascending.
-  void search_folded(const Vector<uint32_t>& folded, const SpatialHash& hash);
+  void search_folded(const Vector<uint32_t>& folded, const SpatialHash& hash,
+                     const VertexBytes& risk);
   // Only what is too near, for constraint (3), around all living vertices: a smaller box, no
   // normals, and each pair is seen from one side.
   void search_near(const Vector<uint32_t>& all, const SpatialHash& hash);
@@ -79,6 +83,7 @@ class Surroundings {
   const Mesh& mesh_;
   const Executor& executor_;
   SimdTarget simd_;
+  const VertexBytes* risk_ = nullptr;  // of this search
   Vector<Task> tasks_;
   Spares<Scratch> scratches_;
   Vector<VertexPair> too_near_;

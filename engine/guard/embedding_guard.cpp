@@ -44,7 +44,8 @@ void include(FaceBox& all, const FaceBox& box) {
   }
 }
 
-// Around a vertex, once its ring has changed; the vertex stays where it is.
+// Whether the faces around a vertex will meet nowhere once its ring has changed. The vertex stays
+// where it is.
 bool ring_is_embedded(const Mesh& mesh, const Proposal::RingChange& change) {
   const uint32_t v = change.vertex;
   Fan fan(mesh.at(v));
@@ -198,7 +199,7 @@ void EmbeddingGuard::take(const Mesh& mesh, const Proposal& proposal) {
     embedded_of_face_.push_back(embedded_corners(face.id.data()));
 }
 
-// Which of embedded_ are corners of a face.
+// Which of the vertices in embedded_ are corners of a face, as bits.
 uint32_t EmbeddingGuard::embedded_corners(const uint32_t* abc) const {
   uint32_t bits = 0;
   for (size_t i = 0; i < embedded_.size(); ++i) {
@@ -274,7 +275,7 @@ bool EmbeddingGuard::clear_of(const Mesh& mesh, const Proposal& proposal, const 
       const uint32_t embedded = embedded_corners(corners);
       const Triangle face = make_triangle(at, corners);
       for (size_t i = 0; i < boxes_.size(); ++i) {
-        // Faces around a embedded vertex do not meet each other.
+        // The faces around an embedded vertex do not meet each other.
         if ((embedded & embedded_of_face_[i]) == 0 && boxes_overlap(boxes_[i], box) &&
             triangles_intersect(faces_[i], face)) {
           return false;

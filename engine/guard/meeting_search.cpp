@@ -13,7 +13,8 @@
 namespace plc {
 namespace {
 
-// Per task: vertices to list faces of, nodes to build; vertices and nodes of leaves to search.
+// Per task: vertices whose faces are listed, and nodes that are built; vertices whose faces are
+// searched, and nodes of leaves that are.
 constexpr size_t kVertexBlock = 128;
 constexpr size_t kNodeBlock = 128;
 constexpr size_t kStarBlock = 128;
@@ -24,7 +25,8 @@ uint32_t lowest_bit(uint32_t mask) {
   return static_cast<uint32_t>(__builtin_ctz(mask));
 }
 
-// visit(index) of those that are not 0, ascending. They are few: eight at a time.
+// visit(index) of the bytes that are not 0, ascending. They are few, so eight are looked at at
+// once.
 template <typename Visit>
 void for_set_bytes(const uint8_t* bytes, uint32_t count, const Visit& visit) {
   for (uint32_t i = 0; i < count; ++i) {
@@ -72,7 +74,7 @@ void MeetingSearch::list_vertices(const Mesh& mesh) {
   }
 }
 
-// Ascending: of many it is faster to go through all ids.
+// Makes the listed vertices ascend. Where there are many, it is faster to go through all ids.
 void MeetingSearch::sort_vertices(uint32_t slots) {
   constexpr size_t kFew = 128;
   if (vertices_.size() < slots / kFew) {
@@ -84,7 +86,7 @@ void MeetingSearch::sort_vertices(uint32_t slots) {
 }
 
 void MeetingSearch::list_faces(const Mesh& mesh, const Executor& executor) {
-  // Each face from the first of its corners that is marked.
+  // Visits each face once: at that of its marked corners which has the lowest id.
   const auto for_faces = [&](size_t begin, size_t end, const auto& vertex, const auto& face) {
     for (size_t i = begin; i < end; ++i) {
       const uint32_t v = vertices_[i];
@@ -182,10 +184,10 @@ void MeetingSearch::build_level(size_t index, const Executor& executor) {
   });
 }
 
-// Of a marked face.
+// The index of a listed face, whichever of its corners comes first here.
 uint32_t MeetingSearch::index_of(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) const {
   const auto before = [&](uint32_t x, uint32_t y) { return !mesh.marked(y) || x < y; };
-  // The first of its marked corners in front.
+  // Brings the marked corner of the lowest id to the front.
   while (!mesh.marked(a) || !before(a, b) || !before(a, c)) {
     const uint32_t first = a;
     a = b;
@@ -199,7 +201,7 @@ uint32_t MeetingSearch::index_of(const Mesh& mesh, uint32_t a, uint32_t b, uint3
   return f;
 }
 
-// Marked faces around v with each other.
+// Tests the marked faces around v against each other.
 void MeetingSearch::search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) const {
   const uint32_t count = mesh.rings.valence[v];
   if (count == 0) return;
@@ -229,7 +231,7 @@ void MeetingSearch::search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) cons
   }
 }
 
-// The nodes of leaves from this one on whose boxes overlap its own.
+// Lists the nodes of leaves whose boxes overlap that of this one, itself and those after it.
 void MeetingSearch::find_near(uint32_t node, Vector<uint32_t>& near) const {
   near.clear();
   if (level_count_ == 2) {
@@ -249,7 +251,7 @@ void MeetingSearch::find_near(uint32_t node, Vector<uint32_t>& near) const {
     const Level& level = levels_[at.level];
     uint32_t hits = level.boxes[at.node].overlapping(box);
     if (!moved) hits &= level.moved[at.node];
-    // Children that lie before this node have found it themselves.
+    // Nodes before this one find the pair when it is their turn.
     const uint32_t own = node >> (3 * (at.level - 2));  // the child of this level that holds it
     if (own >= (at.node + 1) * kLanes) continue;
     if (own >= at.node * kLanes) hits &= ~((1U << (own - at.node * kLanes)) - 1);
@@ -264,8 +266,8 @@ void MeetingSearch::find_near(uint32_t node, Vector<uint32_t>& near) const {
   }
 }
 
-// Faces of the leaves of one node with those of later leaves, or the same, that have no common
-// vertex.
+// Tests the faces in the leaves of one node against those in the same and in later leaves with
+// which they have no vertex in common.
 void MeetingSearch::search_leaves(const Mesh& mesh, uint32_t node, Scratch& scratch,
                                   Pairs& pairs) const {
   const Level &leaves = levels_[0], &nodes = levels_[1];

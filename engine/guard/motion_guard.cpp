@@ -22,13 +22,13 @@ void MotionGuard::find_folds(const Vector<uint32_t>& blocks) {
     Vector<uint32_t>& found = found_[task];
     found.clear();
     const Blocks part = Blocks::of(blocks.data(), blocks.size(), begin, end);
-    kernels::turned_faces(simd_, mesh_.rings(), mesh_.position.data(), part, n.x.data(), n.y.data(),
-                          n.z.data(), kRiskDot, folds_.data());
+    kernels::turned_faces(simd_, mesh_.rings(), mesh_.position.data(), part,
+                          {n.x.data(), n.y.data(), n.z.data()}, kRiskDot, folds_.data());
     for (size_t i = 0; i < part.count; ++i) {
       for (uint32_t v = part.begin(i); v < part.begin(i) + kRingLanes; ++v) {
-        if (folds_[v] != 0 && (mesh_.risk[v] & Mesh::kFoldRisk) == 0) found.push_back(v);
-        const uint32_t near = mesh_.risk[v] & Mesh::kNearRisk;
-        mesh_.risk[v] = static_cast<uint8_t>(near | uint32_t{folds_[v]} * Mesh::kFoldRisk);
+        if (folds_[v] != 0 && (risk_[v] & kFoldRisk) == 0) found.push_back(v);
+        const uint32_t near = risk_[v] & kNearRisk;
+        risk_[v] = static_cast<uint8_t>(near | uint32_t{folds_[v]} * kFoldRisk);
       }
     }
   });
@@ -39,8 +39,8 @@ void MotionGuard::find_folds(const Vector<uint32_t>& blocks) {
 }
 
 void MotionGuard::assess(const Vector<uint32_t>& due, const Vector<uint32_t>& at_risk) {
-  for (const uint32_t v : due) mesh_.risk[v] &= Mesh::kFoldRisk;
-  for (const uint32_t v : at_risk) mesh_.risk[v] |= Mesh::kNearRisk;
+  for (const uint32_t v : due) risk_[v] &= kFoldRisk;
+  for (const uint32_t v : at_risk) risk_[v] |= kNearRisk;
 }
 
 int64_t MotionGuard::take_back(const Buffer<Float4>& before, SpatialHash& hash,
@@ -49,7 +49,7 @@ int64_t MotionGuard::take_back(const Buffer<Float4>& before, SpatialHash& hash,
   for (int64_t now = 1; now != 0; taken_back += now) {
     now = 0;
     const auto& pairs = search_.find(mesh_.rings(), mesh_.slots(), mesh_.position.data(),
-                                     mesh_.risk.data(), executor_, before.data());
+                                     risk_.data(), executor_, before.data());
     for (const auto& [f, g] : pairs) {
       now += put_back(search_.face(f), before, hash, back) +
              put_back(search_.face(g), before, hash, back);

@@ -2,9 +2,11 @@
 #pragma once
 #include <cstdint>
 
+#include "engine/detect/risk.h"
 #include "engine/detect/spatial_hash.h"
 #include "engine/guard/meeting_search.h"
 #include "engine/mesh/mesh.h"
+#include "engine/mesh/vertex_bytes.h"
 #include "kernels/simd.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
@@ -15,10 +17,16 @@ namespace plc {
 // faces that meet go back to where they were and lose their speed; again, until none meet: in the
 // worst case all are back where they started. Only faces with a vertex at risk (risk.h) are tested,
 // against each other, and only where one of the two has moved.
+//
+//   risk           1      flags         of risk.h; attached to the mesh
 class MotionGuard {
  public:
   MotionGuard(Mesh& mesh, const Executor& executor, SimdTarget simd)
-      : mesh_(mesh), executor_(executor), simd_(simd), search_(simd) {}
+      : mesh_(mesh),
+        executor_(executor),
+        risk_(mesh, kNearRisk, VertexBytes::Reset::kCreated),
+        simd_(simd),
+        search_(simd) {}
 
   // blocks: of kRingLanes vertices, with all that have moved and all their neighbours. Finds where
   // the surface folds now, against the normals of the movement's start.
@@ -28,9 +36,16 @@ class MotionGuard {
   // due: the vertices whose risk has been looked at anew; at_risk: those of all that it was found
   // for (Surroundings). The others keep theirs.
   void assess(const Vector<uint32_t>& due, const Vector<uint32_t>& at_risk);
+  // Whatever it was, v is at risk.
+  void suspect(uint32_t v) { risk_[v] = kNearRisk; }
   // `before`: the positions before the movement, by id. The hash learns of the vertices that go
   // back, which are appended to `back`. Returns how many went back.
   int64_t take_back(const Buffer<Float4>& before, SpatialHash& hash, Vector<uint32_t>& back);
+
+  const VertexBytes& risk() const { return risk_; }
+  // restore(): after that of the mesh.
+  void save(StateWriter& to) const { risk_.save(to); }
+  void restore(StateReader& from) { risk_.restore(from); }
 
  private:
   int64_t put_back(const uint32_t* face, const Buffer<Float4>& before, SpatialHash& hash,
@@ -38,6 +53,7 @@ class MotionGuard {
 
   Mesh& mesh_;
   const Executor& executor_;
+  VertexBytes risk_;
   SimdTarget simd_;
   Buffer<uint8_t> folds_;
   Vector<Vector<uint32_t>> found_;  // newly folded, by task

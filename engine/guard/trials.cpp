@@ -42,7 +42,7 @@ Vec3 Trials::deletion_place(const Mesh& mesh, const Edge& e, uint32_t place) {
 
 bool Trials::can_try(const Mesh& mesh, const Candidate& c) {
   if (c.operation == Operation::kCreation || c.operation == Operation::kInversion) return true;
-  // With an apex of valence 3 it is no deletion of an edge but of a tetrahedron.
+  // Where an apex has valence 3 a tetrahedron is deleted, and not an edge.
   return c.operation == Operation::kDeletion && mesh.valence(c.edge.a) > 3 &&
          mesh.valence(c.edge.b) > 3;
 }
@@ -79,7 +79,8 @@ uint32_t Trials::admitted(const Candidate& c, size_t trial) {
   return first_admitted(c, guard_, nullptr);
 }
 
-// Fills around_ with the centres of what has been applied there; whether anything has.
+// Fills around_ with the centres of the operations that have been applied within the box. False
+// where there is none.
 bool Trials::find_overlapping(const Box3& box) {
   around_.clear();
   bool found = false;

@@ -83,7 +83,7 @@ void Mesh::place(uint32_t v, Vec3 p) {
   assert(v < slots_);
   position[v] = {p.x, p.y, p.z, 0};
   resize(v);
-  calm[v] = 0;
+  touch(v);
 }
 
 uint32_t Mesh::create(Vec3 p, Vec3 speed) {
@@ -105,8 +105,7 @@ uint32_t Mesh::create(Vec3 p, Vec3 speed) {
 // Everything but its ring.
 void Mesh::start_vertex(uint32_t v) {
   visit_streams(*this, [v](auto& stream) { stream[v] = {}; });
-  risk[v] = kNearRisk;
-  wake(v);
+  reset_bytes(v, VertexBytes::Reset::kCreated);
 }
 
 uint32_t Mesh::create_many(uint32_t count, uint32_t valence, const Executor& executor) {
@@ -205,6 +204,23 @@ void Mesh::remove(uint32_t v, uint32_t neighbor) {
   set_ring(v, r);
 }
 
+void Mesh::take(Mesh&& other) {
+  *this = std::move(other);
+  for (VertexBytes* bytes : attached_) start_bytes(*bytes);
+}
+
+void Mesh::attach(VertexBytes& bytes) {
+  attached_.add(bytes);
+  start_bytes(bytes);
+}
+
+// As if every vertex had just been created.
+void Mesh::start_bytes(VertexBytes& bytes) {
+  bytes.bytes_.clear();
+  bytes.bytes_.resize(valence_.size());
+  std::fill_n(bytes.bytes_.begin(), slots_, bytes.first_);
+}
+
 void Mesh::clear() {
   Mesh empty;
   empty.delta = delta;
@@ -214,6 +230,7 @@ void Mesh::clear() {
   empty.most_vertices = most_vertices;
   empty.most_neighbors = most_neighbors;
   *this = std::move(empty);
+  for (VertexBytes* bytes : attached_) bytes->bytes_ = {};
 }
 
 void Mesh::reserve(uint64_t vertices) {
@@ -229,6 +246,7 @@ void Mesh::grow(uint64_t slots) {
   if (n <= valence_.size()) return;
   const size_t old = valence_.size();
   visit_streams(*this, [n](auto& stream) { stream.resize(n); });
+  for (VertexBytes* bytes : attached_) bytes->bytes_.resize(n);
   columns_.resize(n * kRingColumns);
   valence_.resize(n);
   refresh_view();
@@ -276,8 +294,19 @@ void Mesh::renumber(const Vector<uint32_t>& order, const Executor& executor) {
       source = {};
     });
   });
+  const size_t own = streams.size();
+  // Side by side, as the streams of a mesh are (buffer.h).
+  std::vector<Buffer<uint8_t>> renumbered(attached_.size());
+  for (VertexBytes* bytes : attached_) {
+    streams.emplace_back([&, bytes, target = &renumbered[streams.size() - own]] {
+      permute(bytes->bytes_, order, to.padded(), *target);
+      bytes->bytes_ = {};
+    });
+  }
   executor.run(streams.size(), [&](size_t stream) { streams[stream](); });
   *this = std::move(to);
+  size_t next = 0;
+  for (VertexBytes* bytes : attached_) bytes->bytes_.swap(renumbered[next++]);
   refresh_view();
 }
 
@@ -352,6 +381,7 @@ uint64_t Mesh::bytes() const {
   const auto of = [](const auto& b) { return b.capacity() * sizeof(b[0]); };
   uint64_t sum = of(columns_) + of(valence_) + of(tail_);
   visit_streams(*this, [&](const auto& stream) { sum += of(stream); });
+  for (const VertexBytes* bytes : attached_) sum += of(bytes->bytes_);
   return sum;
 }
 

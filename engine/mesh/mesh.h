@@ -10,6 +10,7 @@
 #include "engine/base/vec3.h"
 #include "engine/mesh/neighbors.h"
 #include "engine/mesh/sizing.h"
+#include "engine/mesh/vertex_bytes.h"
 #include "kernels/ring.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
@@ -53,15 +54,11 @@ struct Streams3 {
 //   normal         12     1             normals
 //   displacement   12     mesh units    stages, move
 //   path           4      mesh units    move; reset when the constraints of v are checked
-//   idle           1      iterations    since the constraints of v were checked
-//   calm           1      iterations    sleep.h: for how long v has been calm, up to 255
-//   drift          1      1/256 of      sleep.h: movement along the normal since v last woke its
-//                         kWakeMove     neighbours
-//   risk           1      flags         motion guard: the surface is near or folded here (risk.h)
-//   operations     1      count         resolution, in this iteration
 //   turns          1      turns.h       sleep.h, transformations, motion guard
 //   cut            4+4    id, iteration annular: which cut made v, and when (exemption from (3))
 //   rings          48+2   id            transformations (kernels/ring.h)
+//
+// What single algorithms know of each vertex is theirs, and attached to the mesh (VertexBytes).
 //
 // Coordinates are of the mesh space: voxels of I_0 (method 2 of 4.4) or mm over U_0 (method 1).
 // Not thread-safe; distinct vertices may be written concurrently where a pass says so.
@@ -70,15 +67,12 @@ class Mesh {
   Mesh() = default;
   // Copies are made by copy() alone: their view is of their own rings.
   Mesh(Mesh&&) = default;
-  Mesh& operator=(Mesh&&) = default;
+  // The surface of another mesh instead of its own.
+  void take(Mesh&& other);
 
   Streams3 velocity, normal, displacement;
   Buffer<Float4> position;
   Buffer<float> path;
-  Buffer<uint8_t> idle;
-  Buffer<uint8_t> calm, drift;
-  Buffer<uint8_t> risk;
-  Buffer<uint8_t> operations;
   Buffer<uint8_t> turns;
   Buffer<uint32_t> cut_id;
   Buffer<uint32_t> cut_iteration;
@@ -165,15 +159,10 @@ class Mesh {
   void insert_after(uint32_t v, uint32_t neighbor, uint32_t added);
   void remove(uint32_t v, uint32_t neighbor);
 
-  // Makes every constraint of v be checked at the next opportunity; v does not sleep.
-  void wake(uint32_t v) {
-    idle[v] = kAwake;
-    calm[v] = 0;
-  }
-  static constexpr uint8_t kAwake = 255;
-  // Bits of risk (risk.h): other parts of the surface are near v; the surface is folded around v.
-  static constexpr uint8_t kNearRisk = 1;
-  static constexpr uint8_t kFoldRisk = 2;
+  // v has changed: it does not sleep.
+  void touch(uint32_t v) { reset_bytes(v, VertexBytes::Reset::kTouched); }
+  // Makes every constraint of v be checked at the next opportunity, too.
+  void wake(uint32_t v) { reset_bytes(v, VertexBytes::Reset::kWoken); }
 
   void clear();
   void reserve(uint64_t vertices);  // throws TooManyVertices
@@ -197,7 +186,18 @@ class Mesh {
   bool restore(StateReader& from);
 
  private:
+  friend class VertexBytes;
+
   Mesh(const Mesh&) = default;
+  Mesh& operator=(Mesh&&) = default;
+  void attach(VertexBytes& bytes);
+  void detach(VertexBytes& bytes) { attached_.remove(bytes); }
+  void reset_bytes(uint32_t v, VertexBytes::Reset event) {
+    for (VertexBytes* bytes : attached_) {
+      if (bytes->reset_ <= event) bytes->bytes_[v] = bytes->first_;
+    }
+  }
+  void start_bytes(VertexBytes& bytes);
   // visit(stream of a, stream of b) for every stream of the vertices but the rings.
   template <typename A, typename B, typename Visit>
   static void visit_streams(A& a, B& b, const Visit& visit);
@@ -226,6 +226,7 @@ class Mesh {
   std::array<Vector<uint32_t>, 16> free_tails_;  // by size class
   Vector<uint32_t> free_;
   RingView view_;
+  AttachedBytes attached_;
 };
 
 // Of an adaptive mesh that may not be of its sizes yet: sets stretch and longest_edge to what its
@@ -244,11 +245,6 @@ void Mesh::visit_streams(A& a, B& b, const Visit& visit) {
   visit3(a.displacement, b.displacement);
   visit(a.position, b.position);
   visit(a.path, b.path);
-  visit(a.idle, b.idle);
-  visit(a.calm, b.calm);
-  visit(a.drift, b.drift);
-  visit(a.risk, b.risk);
-  visit(a.operations, b.operations);
   visit(a.turns, b.turns);
   visit(a.cut_id, b.cut_id);
   visit(a.cut_iteration, b.cut_iteration);

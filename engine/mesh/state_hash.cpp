@@ -54,11 +54,6 @@ std::vector<PartHash> part_hashes(const Mesh& mesh) {
           part_hash("normal", mesh.normal),
           part_hash("displacement", mesh.displacement),
           part_hash("path", mesh.path),
-          part_hash("idle", mesh.idle),
-          part_hash("calm", mesh.calm),
-          part_hash("drift", mesh.drift),
-          part_hash("risk", mesh.risk),
-          part_hash("operations", mesh.operations),
           part_hash("turns", mesh.turns),
           part_hash("cut id", mesh.cut_id),
           part_hash("cut iteration", mesh.cut_iteration)};

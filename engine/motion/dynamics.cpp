@@ -209,17 +209,15 @@ void Dynamics::normals(const Guide& guide) {
   const Float4* position = mesh_.position.data();
   for_tasks([&](size_t, const Blocks& blocks) {
     if (model_.curvature > 0) {
-      kernels::normals_and_laplacian(simd_, mesh_.rings(), position, blocks, n.x, n.y, n.z,
-                                     laplacian_.data());
+      kernels::normals_and_laplacian(simd_, mesh_.rings(), position, blocks, n, laplacian_.data());
     } else {
-      kernels::normals(simd_, mesh_.rings(), position, blocks, n.x, n.y, n.z);
+      kernels::normals(simd_, mesh_.rings(), position, blocks, n);
     }
     if (!stretched(guide.metric)) return;
     const kernels::Float3s m = raw(metric_normal_);
     const kernels::Float3s step = raw(metric_step_);
     split_runs(blocks, [&](uint32_t begin, uint32_t end) {
-      kernels::metric_normals(simd_, guide.metric, n.x, n.y, n.z, begin, end, m.x, m.y, m.z, step.x,
-                              step.y, step.z);
+      kernels::metric_normals(simd_, guide.metric, n, begin, end, m, step);
     });
   });
 }
@@ -267,18 +265,17 @@ const Float4* Dynamics::stage_position(int stage) const {
 }
 
 void Dynamics::gather_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end) {
-  const auto& [fx, fy, fz] = raw(force_);
+  const kernels::Float3s force = raw(force_);
   if (model_.curvature > 0) {
     kernels::curvature_force(simd_, mesh_.rings(), laplacian_.data(),
-                             mesh_.sizing == nullptr ? model_.curvature : 1, begin, end, fx, fy,
-                             fz);
+                             mesh_.sizing == nullptr ? model_.curvature : 1, begin, end, force);
     if (mesh_.sizing != nullptr) scale_by_size(begin, end);
   } else {
-    for (float* f : {fx, fy, fz}) std::fill(f + begin, f + end, 0.0F);
+    for (float* f : {force.x, force.y, force.z}) std::fill(f + begin, f + end, 0.0F);
   }
   if (model_.spring > 0) {
-    kernels::spring_force(simd_, mesh_.rings(), stage_position(stage), model_.spring, rest_length_,
-                          guide.metric, begin, end, fx, fy, fz);
+    kernels::spring_force(simd_, mesh_.rings(), stage_position(stage),
+                          {model_.spring, rest_length_, guide.metric}, begin, end, force);
   }
   image_forces(stage, guide, begin, end);
   if (guide.user == nullptr) return;
@@ -306,25 +303,25 @@ void Dynamics::scale_by_size(uint32_t begin, uint32_t end) {
 
 // (7) and (8), both normalised by delta (3.8).
 void Dynamics::image_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end) {
-  const auto& [fx, fy, fz] = raw(force_);
+  const kernels::Float3s force = raw(force_);
   const auto delta = static_cast<float>(mesh_.delta);
   if (model_.attraction != 0) {
     if (mesh_.sizing != nullptr) {
       kernels::sized_iso_force(simd_, surface_forces(stage, guide), mesh_.position.data(), begin,
-                               end, raw(force_));
+                               end, force);
     } else {
-      const auto& [nx, ny, nz] = raw(image_normal(guide));
-      kernels::iso_force(simd_, guide.image, stage_position(stage), nx, ny, nz,
-                         delta * model_.attraction, guide.iso, begin, end, fx, fy, fz);
+      kernels::iso_force(simd_, guide.image, stage_position(stage), raw(image_normal(guide)),
+                         {delta * model_.attraction, guide.iso}, begin, end, force);
     }
   }
   if (guide.gradient.data != nullptr) {
-    const auto& [nx, ny, nz] =
-        raw(std::as_const(stretched(guide.metric) ? metric_normal_ : mesh_.normal));
+    const Streams3& normal = stretched(guide.metric) ? metric_normal_ : mesh_.normal;
     const Metric& m = guide.metric;
-    kernels::gradient_force(simd_, guide.gradient, stage_position(stage), nx, ny, nz,
-                            delta * model_.gradient_normal, delta * model_.gradient_tangent,
-                            {1 / m.x, 1 / m.y, 1 / m.z}, begin, end, fx, fy, fz);
+    kernels::gradient_force(simd_, guide.gradient, stage_position(stage), raw(normal),
+                            {delta * model_.gradient_normal,
+                             delta * model_.gradient_tangent,
+                             {1 / m.x, 1 / m.y, 1 / m.z}},
+                            begin, end, force);
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <vector>
 
+#include "engine/base/defaults.h"
 #include "engine/base/schedule.h"
 #include "engine/base/state_io.h"
 #include "engine/base/statistics.h"
@@ -22,17 +23,18 @@ enum class Bound { kClamp, kScale };
 
 // The model's coefficients, validated; see plc_parameters for units and ranges.
 struct Model {
-  float curvature = 0.4F;  // alpha_c
-  float spring = 0;        // alpha_e
+  float curvature = static_cast<float>(defaults::kCurvature);  // alpha_c
+  float spring = static_cast<float>(defaults::kSpring);        // alpha_e
   RestLength rest_length = RestLength::kMean;
-  float rest_length_value = 0;  // in delta
-  float attraction = -1;        // alpha_I, negative when the object is bright; 0: no iso force
-  float gradient_normal = 0;    // alpha_gradI (8)
-  float gradient_tangent = 0;   // beta_gradI (8)
-  float mass = 1;
-  float damping = 0.5F;
-  float time_step = 1;
-  float max_move = 0.4F;  // in delta
+  float rest_length_value = static_cast<float>(defaults::kRestLength);  // in delta
+  // alpha_I, negative when the object is bright; 0: no iso force
+  float attraction = static_cast<float>(-defaults::kAttraction);
+  float gradient_normal = 0;   // alpha_gradI (8)
+  float gradient_tangent = 0;  // beta_gradI (8)
+  float mass = static_cast<float>(defaults::kMass);
+  float damping = static_cast<float>(defaults::kDamping);
+  float time_step = static_cast<float>(defaults::kTimeStep);
+  float max_move = static_cast<float>(defaults::kMaxMove);  // in delta
   Bound bound = Bound::kClamp;
 };
 

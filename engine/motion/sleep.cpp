@@ -16,17 +16,6 @@ namespace {
 
 constexpr size_t kTaskCalm = 512;  // blocks
 
-bool all_calm(const Mesh& mesh, uint32_t block) {
-  const uint8_t* calm = mesh.calm.data() + size_t{block} * kRingLanes;
-  // Without a minimum, which GCC 12 looks for one by one.
-  uint8_t restless[kRingLanes];
-  for (uint32_t lane = 0; lane < kRingLanes; ++lane) restless[lane] = calm[lane] < kCalmPeriod;
-  uint64_t halves[2];
-  static_assert(sizeof halves == sizeof restless);
-  std::memcpy(halves, restless, sizeof halves);
-  return (halves[0] | halves[1]) == 0;
-}
-
 struct Limits {
   float along;          // of calm vertices: less than this along the normal
   float slide_squared;  // ... and in all
@@ -37,7 +26,8 @@ struct Limits {
 // Brings calm, drift and turns of a block's vertices up to date. Returns those that wake their
 // neighbours, as bits. Loops over whole blocks without branches, which compilers make vector code
 // of.
-uint32_t observe_block(Mesh& mesh, uint32_t first, const Limits& limits) {
+uint32_t observe_block(Mesh& mesh, uint8_t* calm_for, uint8_t* drifted, uint32_t first,
+                       const Limits& limits) {
   const Streams3 &move = mesh.displacement, &normal = mesh.normal;
   const float *dx = &move.x[first], *dy = &move.y[first], *dz = &move.z[first];
   const float *nx = &normal.x[first], *ny = &normal.y[first], *nz = &normal.z[first];
@@ -56,8 +46,6 @@ uint32_t observe_block(Mesh& mesh, uint32_t first, const Limits& limits) {
   }
   uint8_t* const turns = &mesh.turns[first];
   for (uint32_t k = 0; k < kRingLanes; ++k) turns[k] = moved_to_side(turns[k], side[k]);
-  uint8_t* const calm_for = &mesh.calm[first];
-  uint8_t* const drifted = &mesh.drift[first];
   int32_t most = 0;
   for (uint32_t k = 0; k < kRingLanes; ++k) {
     calm_for[k] = static_cast<uint8_t>(calm[k] * std::min(calm_for[k] + 1, 255));
@@ -75,19 +63,30 @@ uint32_t observe_block(Mesh& mesh, uint32_t first, const Limits& limits) {
 
 }  // namespace
 
+bool Sleep::all_calm(uint32_t block) const {
+  const uint8_t* calm = calm_.data() + size_t{block} * kRingLanes;
+  // Without a minimum, which GCC 12 looks for one by one.
+  uint8_t restless[kRingLanes];
+  for (uint32_t lane = 0; lane < kRingLanes; ++lane) restless[lane] = calm[lane] < kCalmPeriod;
+  uint64_t halves[2];
+  static_assert(sizeof halves == sizeof restless);
+  std::memcpy(halves, restless, sizeof halves);
+  return (halves[0] | halves[1]) == 0;
+}
+
 void Sleep::choose(bool all) {
   const uint32_t blocks = mesh_.padded() / kRingLanes;
   asleep_.resize(blocks, 0);
-  calm_.resize(blocks);
+  to_sleep_.resize(blocks);
   run_blocks(executor_, blocks, kTaskCalm, [&](size_t, size_t begin, size_t end) {
     for (size_t block = begin; block < end; ++block) {
-      calm_[block] = !all && speeds_.calm > 0 && all_calm(mesh_, static_cast<uint32_t>(block));
+      to_sleep_[block] = !all && speeds_.calm > 0 && all_calm(static_cast<uint32_t>(block));
     }
   });
   awake_.clear();
   fallen_.clear();
   for (uint32_t block = 0; block < blocks; ++block) {
-    if (calm_[block] == 0) {
+    if (to_sleep_[block] == 0) {
       awake_.push_back(block);
     } else if (asleep_[block] == 0) {
       fallen_.push_back(block);
@@ -97,7 +96,7 @@ void Sleep::choose(bool all) {
       }
     }
   }
-  asleep_.swap(calm_);
+  asleep_.swap(to_sleep_);
   any_asleep_ = awake_.size() < blocks;
   find_rim();
 }
@@ -143,7 +142,7 @@ void Sleep::find_rim() {
 }
 
 void Sleep::observe() {
-  assert(calm_.size() == mesh_.padded() / kRingLanes);  // choose() came before
+  assert(to_sleep_.size() == mesh_.padded() / kRingLanes);  // choose() came before
   const auto delta = static_cast<float>(mesh_.delta);
   const float along = speeds_.calm * delta;
   const float slide = kCalmSlide * along;
@@ -154,7 +153,7 @@ void Sleep::observe() {
     wakers.clear();
     for (size_t i = begin; i < end; ++i) {
       const uint32_t first = awake_[i] * kRingLanes;
-      uint32_t waking = observe_block(mesh_, first, limits);
+      uint32_t waking = observe_block(mesh_, &calm_[first], &drift_[first], first, limits);
       for (; waking != 0; waking &= waking - 1) {
         wakers.push_back(first + static_cast<uint32_t>(__builtin_ctz(waking)));
       }
@@ -165,20 +164,23 @@ void Sleep::observe() {
     for (const uint32_t v : found_[task]) {
       const uint32_t d = mesh_.valence(v);
       for (uint32_t k = 0; k < d; ++k) {
-        std::atomic_ref<uint8_t>(mesh_.calm[mesh_.neighbor(v, k)])
-            .store(0, std::memory_order_relaxed);
+        std::atomic_ref<uint8_t>(calm_[mesh_.neighbor(v, k)]).store(0, std::memory_order_relaxed);
       }
     }
   });
 }
 
-void Sleep::restore(StateReader& from) {
-  from.read_all(asleep_);
-  from.demand(asleep_.size() <= mesh_.padded() / kRingLanes);
+void Sleep::save(StateWriter& to) const {
+  calm_.save(to);
+  drift_.save(to);
+  to.add_all(asleep_);
 }
 
-void Sleep::wake_all() {
-  std::fill(mesh_.calm.begin(), mesh_.calm.end(), uint8_t{0});
+void Sleep::restore(StateReader& from) {
+  calm_.restore(from);
+  drift_.restore(from);
+  from.read_all(asleep_);
+  from.demand(asleep_.size() <= mesh_.padded() / kRingLanes);
 }
 
 }  // namespace plc

@@ -1,6 +1,12 @@
 // Regions where nothing has moved for long sleep whole, beyond the slow vertices of 3.6: they are
 // neither moved nor checked.
 //
+// Streams, each attached to the mesh:
+//
+//   calm           1      iterations    for how long v has been calm, up to 255
+//   drift          1      1/256 of      movement along the normal since v last woke its neighbours
+//                         kWakeMove
+//
 // A vertex is calm in an iteration in which it has moved less than the calm speed along its normal,
 // and less than kCalmSlide times that in all: sliding within the surface changes samples, not
 // shape. A block of kRingLanes vertices sleeps when all of them have been calm kCalmPeriod times in
@@ -14,6 +20,7 @@
 
 #include "engine/base/state_io.h"
 #include "engine/mesh/mesh.h"
+#include "engine/mesh/vertex_bytes.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
 
@@ -27,7 +34,11 @@ class Sleep {
     float turn = std::numeric_limits<float>::infinity();  // slower movements are no turns (turns.h)
   };
   Sleep(Mesh& mesh, const Executor& executor, const Speeds& speeds)
-      : mesh_(mesh), executor_(executor), speeds_(speeds) {}
+      : mesh_(mesh),
+        executor_(executor),
+        speeds_(speeds),
+        calm_(mesh, 0, VertexBytes::Reset::kTouched),
+        drift_(mesh, 0, VertexBytes::Reset::kCreated) {}
 
   // Chooses the blocks of the coming step. Those that fall asleep lose their velocities and
   // displacements. all: every block, whatever has been.
@@ -43,23 +54,28 @@ class Sleep {
   // After the step: who was calm, who has turned, and who wakes its neighbours. Normals and
   // displacements are those of the step.
   void observe();
-  void wake_all();
+  void wake_all() { calm_.fill(0); }
+  const VertexBytes& calm() const { return calm_; }
+  const VertexBytes& drift() const { return drift_; }
   // Ids have changed: everything that sleeps counts as fallen asleep just now.
   void restart() { asleep_.clear(); }
-  // Which blocks are asleep: those that fell asleep before are not treated as new ones.
-  void save(StateWriter& to) const { to.add_all(asleep_); }
+  // The streams, and which blocks are asleep: those that fell asleep before are not treated as new
+  // ones. restore(): after that of the mesh.
+  void save(StateWriter& to) const;
   void restore(StateReader& from);
 
  private:
+  bool all_calm(uint32_t block) const;
   void find_rim();
 
   Mesh& mesh_;
   const Executor& executor_;
   Speeds speeds_;
+  VertexBytes calm_, drift_;
   bool any_asleep_ = false;
   Vector<uint32_t> awake_, fallen_, awake_and_rim_;
-  Vector<uint8_t> asleep_, calm_, touched_;  // by block
-  std::vector<Vector<uint32_t>> found_;      // per task
+  Vector<uint8_t> asleep_, to_sleep_, touched_;  // by block
+  std::vector<Vector<uint32_t>> found_;          // per task
 };
 
 }  // namespace plc

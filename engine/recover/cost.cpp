@@ -13,18 +13,18 @@ namespace plc {
 
 namespace {
 
-// Of a vertex, in delta^2: edges of 1.6 delta in the mean.
+// The area that belongs to a vertex, in delta^2, where edges are 1.6 delta long in the mean.
 constexpr double kAreaPerVertex = 2.2;
-// With all that works on it (perf/results/targets.md).
+// The mesh and everything that works on it (perf/results/targets.md).
 constexpr double kBytesPerVertex = 250;
 // Faces of voxels have 3/2 of the area of a smooth surface between them, in the mean over all
 // directions.
 constexpr double kStairs = 1.5;
-// Voxels of a level that are looked at.
+// About so many voxels of a level are looked at, in slices at equal distances.
 constexpr double kLooked = 1 << 22;
 
-// Faces between the object and the rest along each axis, of the voxels of slice z and with the next
-// slice.
+// Counts the faces of voxels between the object and what is not, by the axis that they are
+// perpendicular to: those within slice z, and those between it and the next slice.
 std::array<int64_t, 3> faces_of(const ImageObject& object, int32_t z) {
   const ImageView& image = object.image;
   const auto width = static_cast<size_t>(image.dims[0]);
@@ -48,7 +48,7 @@ std::array<int64_t, 3> faces_of(const ImageObject& object, int32_t z) {
   return faces;
 }
 
-// Of the surface of the object, in mesh units squared.
+// The area of the object's surface, in mesh units squared.
 double area_of(const ImageObject& object, const Executor& executor) {
   const ImageView& image = object.image;
   const double voxels = static_cast<double>(image.dims[0]) * image.dims[1] * image.dims[2];

@@ -69,7 +69,7 @@ void Evolution::append_topology(Seconds& seconds, OperationCounts& counts,
   constexpr uint32_t kSurface = kRings | kPositions | kNormals;
   add("due", kAwake | kCalm, kDue, [this, &counts] {
     if (slow_vertices_) {
-      detection_.list_due(sleep_.awake());
+      detection_.list_due(sleep_.awake(), sleep_.calm());
     } else {
       detection_.list_all();
     }
@@ -79,7 +79,7 @@ void Evolution::append_topology(Seconds& seconds, OperationCounts& counts,
   add("hash", kDue | kPositions, kHash, [this] { detection_.update_hash(); });
   add("folds", kAwake | kSurface, kFolds, [this] { guard_.find_folds(sleep_.awake_and_rim()); });
   add("surroundings", kDue | kHash | kSurface | kFolds, kSurroundings,
-      [this] { detection_.search(guard_.newly_folded()); });
+      [this] { detection_.search(guard_.risk(), guard_.newly_folded()); });
   add("risk", kDue | kSurroundings | kFolds, kRisk,
       [this] { guard_.assess(detection_.due(), detection_.surroundings().at_risk()); });
   add("motion guard", kRisk | kStages | kSurface,
@@ -109,7 +109,7 @@ bool Evolution::embedded() {
   const auto meeting = meeting_faces(mesh_, schedule_, simd_);
   for (const auto& face : meeting) {
     for (const uint32_t v : face) {
-      mesh_.risk[v] = Mesh::kNearRisk;
+      guard_.suspect(v);
       mesh_.wake(v);
     }
   }
@@ -121,6 +121,8 @@ void Evolution::save(StateWriter& to) const {
   to.add(iteration_);
   sleep_.save(to);
   dynamics_.save(to);
+  detection_.save(to);
+  guard_.save(to);
   resolution_.save(to);
 }
 
@@ -128,8 +130,8 @@ void Evolution::restore(StateReader& from) {
   from.read(iteration_);
   sleep_.restore(from);
   dynamics_.restore(from);
-  // The hash is built anew: what it finds does not depend on when it was built.
-  detection_.restart();
+  detection_.restore(from);
+  guard_.restore(from);
   resolution_.restore(from);
 }
 
@@ -142,7 +144,11 @@ std::vector<PartHash> Evolution::hashes() const {
     near.add(pair.u);
     near.add(pair.w);
   }
-  all.insert(all.end(), {part_hash("fallen asleep", sleep_.fallen()),
+  all.insert(all.end(), {part_hash("idle", detection_.idle().all()),
+                         part_hash("calm", sleep_.calm().all()),
+                         part_hash("drift", sleep_.drift().all()),
+                         part_hash("risk", guard_.risk().all()),
+                         part_hash("fallen asleep", sleep_.fallen()),
                          {"too near", near.value()},
                          part_hash("at risk", around.at_risk()),
                          part_hash("taken back", back_)});

@@ -8,7 +8,8 @@ namespace plc {
 
 namespace {
 
-// All that can be reached from v over frozen vertices; `seen` gets them.
+// The site that v belongs to: all vertices that can be reached from it over frozen ones, which are
+// marked in `seen`.
 FrozenSite site_around(const Mesh& mesh, uint32_t v, Vector<uint8_t>& seen) {
   FrozenSite site;
   double x = 0, y = 0, z = 0;

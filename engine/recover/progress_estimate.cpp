@@ -9,30 +9,32 @@ namespace plc {
 
 namespace {
 
-// All constants: fitted to 24 runs of one thread on real images, uniform, adaptive and direct.
+// All constants are fitted to 24 runs of one thread on real images, uniform, adaptive and direct.
 //
-// What a transformation takes, with the looks around it, and what an iteration takes for a vertex
-// that may sleep, in movements of a vertex.
+// The unit of work is the movement of one vertex. A transformation, with all the checks around it,
+// takes kTransformation of it, and every vertex, asleep or not, kVertex in each iteration.
 constexpr double kTransformation = 200, kVertex = 0.3;
-// What comes before a round - refinement, search for late bubbles, their surfaces - takes this part
-// of its transformations once more.
+// The transformations of a round's first iteration count so many times: what comes before the round
+// - refinement, the search for late bubbles, their surfaces - takes nearly as long as they do.
 constexpr double kBeforeRound = 1.7;
-// A level against the next coarser one: three times the vertices, and a few more iterations.
+// So many times the work of a level is that of the next finer one, which has three times the
+// vertices and takes a few more iterations.
 constexpr double kGrowth = 4;
-// Late bubbles of the last level and a round for them, as a part of the level.
+// The work of the last level's late bubbles and of the round for them, as a part of the level's.
 constexpr double kAgain = 0.15;
-// Rates and energies are averaged over so many iterations, less of them while the round is young:
-// then the last one counts for kYoung of all.
+// Rates and energies are averaged over the last kRecent iterations, or over the last 1 / kYoung of
+// the round while that is less.
 constexpr double kRecent = 30, kYoung = 2.5;
-// At most so many times what the round, or the one before it, has taken is left.
+// At most so many times the iterations that the round, or the one before it, has taken are left.
 constexpr double kMost = 10;
-// The first round: fronts are on their way, and how far that is the energy does not tell. Half of
-// it is taken to be left, and of so many iterations at least.
+// In the first round of a run fronts are on their way, and how far they have to go the energy does
+// not tell: the round is taken to be half over, and to last so many iterations more at least.
 constexpr double kFronts = 100;
-// Iterations become cheaper, the last of many by this part.
+// Iterations become cheaper as a round goes on: where kMany times those that it has taken are still
+// to come, by kCheaper in the mean.
 constexpr double kCheaper = 0.75, kMany = 15;
 
-// Of the last iteration in a mean.
+// The weight of the last iteration in a running mean.
 double share_of(int iterations) {
   return std::clamp(kYoung / iterations, 1 / kRecent, 1.0);
 }
@@ -68,8 +70,9 @@ void ProgressEstimate::observe(const OperationCounts& level, double energy, doub
 double ProgressEstimate::round_left(const Ahead& ahead) const {
   if (ahead.calm) return 0;
   const double took = iterations_;
-  // The energy falls like one over the iterations. The mean of its logarithm lies above that of now
-  // by the part of a round that it lies back.
+  // The energy falls like one over the iterations. recent_ is a mean over some of them, so it lies
+  // above the logarithm of the energy now: an iteration lowers that by 1 / took, and the mean lies
+  // 1 / share - 1 iterations back.
   const double now = recent_ - (1 / share_of(iterations_) - 1) / took;
   double left = took * std::expm1(std::clamp(now, 0.0, 20.0));
   left = std::min(left,
@@ -77,7 +80,7 @@ double ProgressEstimate::round_left(const Ahead& ahead) const {
   if (ahead.late) left = std::min(left, 1.0 * kMinIterations);
   left = std::max(left, kMinIterations - took);
   if (left >= ahead.iterations) return ahead.iterations * rate_;
-  // Before it ends all are awake for a while.
+  // Before the round ends every vertex is awake for kConfirmIterations.
   return left * rate_ * (1 - kCheaper * std::min(1.0, left / (kMany * took))) +
          kConfirmIterations * std::max(0.0, ahead.vertices - rate_);
 }

@@ -51,7 +51,8 @@ Status Recovery::start() {
 }
 
 Status Recovery::advance(Amount amount) {
-  // What belongs to the end of an iteration, or of a level, is done with it.
+  // Goes on until the next iteration or level would begin: the checks at the end of one belong to
+  // it.
   for (bool moved = false; !done_;) {
     if (moved && phase_ == Phase::kStart && amount != Amount::kAll) return {};
     if (moved && phase_ == Phase::kIterate && amount == Amount::kIteration) return {};
@@ -151,7 +152,8 @@ void Recovery::enter(int h) {
   guide_.user = &user_;
 }
 
-// (8): per U_h, in the lengths of the forces.
+// The image that the gradient force (8) samples: its gradients are per U_h, with lengths measured
+// as the forces measure them.
 Status Recovery::build_gradient_image() {
   const Model& model = spec_.model;
   if (model.gradient_normal == 0 && model.gradient_tangent == 0) return {};
@@ -192,7 +194,7 @@ Status Recovery::adapt() {
   evolution_.restart();
   evolution_.notify("refinement");
   if (mesh_.sizing != nullptr) {
-    // To the sizes of this level, before anything moves.
+    // Before anything moves, the edges are brought to the sizes of this level.
     measure_edges(mesh_);
     evolution_.check_all(record().seconds, record().operations);
     mesh_.stretch = kSizedStretch;
@@ -206,7 +208,7 @@ Status Recovery::adapt() {
   return {};
 }
 
-// Of an adaptive mesh: the sizes of the level.
+// Derives the sizes of an adaptive mesh from the image of the level.
 Status Recovery::build_sizing() {
   mesh_.sizing = nullptr;
   mesh_.stretch = 1;
@@ -229,9 +231,9 @@ void Recovery::start_round(int number, bool late) {
   round_.late = late;
   estimate_.start_round();
   double room = most_vertices(pyramid_, level_, spec_.pad_voxels, spec_.anisotropy);
-  // Of a surface, not of what fills the image.
+  // most_vertices() is for edges of delta; the finest sizes have more vertices to the same area.
   if (spec_.sizes) room *= std::max(1.0, 1 / (spec_.sizes->finest * spec_.sizes->finest));
-  // Starts may lie outside.
+  // A surface that starts outside of the image may have more.
   round_.most_vertices = std::max(static_cast<int64_t>(std::min(room, 1.0 * mesh_.most_vertices)),
                                   int64_t{2} * mesh_.vertex_count());
   record().converged = false;
@@ -287,14 +289,16 @@ void Recovery::count_frozen() {
 void Recovery::check() {
   evolution_.check_all(record().seconds, record().operations);
   record().vertices = mesh_.vertex_count();
-  // The search for faces that meet takes twice as long where a twentieth of the ids lie anywhere.
+  // The search for faces that meet takes twice as long where a twentieth of the vertices have ids
+  // far from those of their neighbours.
   renumber();
   evolution_.restart();
   phase_ = Phase::kVerify;
 }
 
-// The guards keep the surface from meeting itself; that they did is tested on every level, and told
-// where they failed.
+// The guards keep the surface from meeting itself. Every level ends with a test that they did;
+// where they did not, the run fails with a message that says so, unless further iterations repair
+// it.
 Status Recovery::verify() {
   constexpr int kRepairs = 50;
   if (evolution_.embedded()) {
@@ -313,7 +317,8 @@ Status Recovery::verify() {
 }
 
 Status Recovery::end_round() {
-  // What is missed on a coarse image the next finer one shows.
+  // On a coarse level nothing is searched for: what it has missed is searched for when the next
+  // finer one starts.
   const bool again = round_.number < kLateRounds && late_iterations_ < spec_.max_iterations;
   if (level_ == 0 && again) {
     bool added = false;
@@ -324,7 +329,7 @@ Status Recovery::end_round() {
     }
   }
   if (mesh_.vertex_count() == 0) return leave_level();
-  if (!mesh_.in_order()) {  // repaired since
+  if (!mesh_.in_order()) {  // repairs have made or deleted vertices
     renumber();
     evolution_.restart();
   }
@@ -364,7 +369,8 @@ Status Recovery::leave_level() {
   return {};
 }
 
-// True when the level has converged: `calm` iterations in a row, the last ones with all awake.
+// Whether the level has converged. `calm` is for how many iterations in a row it has been calm;
+// every vertex must have been awake in the last kConfirmIterations of them.
 bool Recovery::confirmed(int calm) {
   Confirmation& c = round_.confirmation;
   const int iteration = round_.iteration;
@@ -382,7 +388,7 @@ bool Recovery::confirmed(int calm) {
   return false;
 }
 
-// `added`: whether something had been missed.
+// Starts bubbles in what the surface has missed; `added` becomes whether there was anything.
 Status Recovery::add_late_bubbles(bool& added) {
   added = false;
   const bool at_rest = mesh_.vertex_count() == 0 || energy_ <= kLateEnergy * spec_.epsilon;
@@ -412,8 +418,9 @@ Status Recovery::add_late_bubbles(bool& added) {
   return {};
 }
 
-// Neighbours that are far apart in memory cost three times as much, and boxes over runs of ids
-// grow: when the new vertices are a sixteenth of all.
+// Gives new ids when a sixteenth of all vertices have been created since the last time: to read a
+// neighbour that is far away in memory takes three times as long, and the boxes around vertices of
+// successive ids grow.
 void Recovery::renumber_if_scattered() {
   if (!spec_.renumbering || mesh_.created() <= mesh_.vertex_count() / 16) return;
   renumber();
@@ -428,7 +435,7 @@ void Recovery::estimate_progress() {
   ahead.finer_levels = level_;
   ahead.late = round_.late;
   ahead.calm = r.converged;
-  // Bubbles come late where they came late before.
+  // The last level is expected to get late bubbles if an earlier one has had some.
   const bool late = std::any_of(records_.begin(), records_.end(), [](const LevelRecord& l) {
     return l.late.bubbles + l.late.cavities > 0;
   });

@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/constants.h"
+#include "engine/base/defaults.h"
 #include "engine/base/schedule.h"
 #include "engine/base/state_io.h"
 #include "engine/base/statistics.h"
@@ -33,8 +35,9 @@ struct RecoverySpec {
   std::optional<SizeSpec> sizes;
   std::vector<double> isos;  // pi_I per level, normalised; [0] is that of I_0; empty: no iso force
   bool inside_above = true;
-  double gradient_bound = 0.1;  // of (8): the largest norm, in window per U_h; used norms are <= 1
-  int pad_voxels = 0;           // by which the pyramid's I_0 is larger than the input on every side
+  // Of (8): the largest norm, in window per U_h; used norms are <= 1.
+  double gradient_bound = defaults::kGradientBound;
+  int pad_voxels = kPadVoxels;  // by which the pyramid's I_0 is larger than the input on every side
   Anisotropy anisotropy = Anisotropy::kVoxel;
   StartSpec start;
   // Attachments and pins, their places in voxel indices of the unpadded I_0; the force is not read.
@@ -44,9 +47,9 @@ struct RecoverySpec {
   bool sleeping = true;       // sleep.h; never with a user's force, which may change at any time
   bool slow_vertices = true;  // 3.6; false: every vertex is checked in every iteration
   bool renumbering = true;    // along a space-filling curve, at refinements and as ids scatter
-  double epsilon = 5e-6;
-  double calm_speed = 0;  // delta per time; 0: the energy alone tells
-  int max_iterations = 2000;
+  double epsilon = defaults::kEpsilon;
+  double calm_speed = defaults::kCalmSpeed;  // delta per time; 0: the energy alone tells
+  int max_iterations = defaults::kMaxIterations;
 };
 
 struct LevelRecord {
@@ -96,7 +99,7 @@ class Recovery {
   Recovery(Pyramid pyramid, RecoverySpec spec, const Schedule& schedule, SimdTarget simd,
            RecoveryHooks hooks, Mesh& mesh, std::vector<LevelRecord>& records);
 
-  // Up to the initial surface of the coarsest level that shows the object. A level that holds no
+  // Makes the initial surface on the coarsest level that shows the object. A level that holds no
   // surface has 0 vertices in its record; the next finer one then starts anew. Errors: those of
   // start_surface(), kInvalidData (no level holds a surface), kOutOfMemory.
   Status start();
@@ -112,9 +115,10 @@ class Recovery {
   // Of the last iteration.
   const RecoveryProgress& progress() const { return progress_; }
 
-  // The state between two calls, mesh and records included, pyramid, spec and hooks not. restore():
-  // instead of start(), of a recovery with equal ones, which then goes on with the same bits. False
-  // where what is read is no such state; the recovery cannot be used then.
+  // save() writes the state between two calls: mesh and records, but not the pyramid, the spec and
+  // the hooks. restore() is called instead of start() on a recovery with an equal pyramid and spec,
+  // which then goes on with the same bits. It returns false where what it reads is no such state;
+  // the recovery cannot be used then.
   void save(StateWriter& to) const;
   bool restore(StateReader& from);
 
@@ -134,7 +138,7 @@ class Recovery {
     int iteration = 0;
     int calm = 0;  // iterations in a row
     Confirmation confirmation;
-    int64_t most_vertices = 0;  // more are no surface of the level's image
+    int64_t most_vertices = 0;  // no surface of the level's image has more
     int repairs = 0;
   };
 
@@ -196,7 +200,7 @@ class Recovery {
   ProgressEstimate estimate_;
 };
 
-// All of it: start and advance to the end.
+// A whole recovery: start, and advance to the end.
 Status pyramidal_recover_shape(Pyramid pyramid, const RecoverySpec& spec, const Schedule& schedule,
                                SimdTarget simd, const RecoveryHooks& hooks, Mesh& mesh,
                                std::vector<LevelRecord>& records);

@@ -73,7 +73,7 @@ void Recovery::save(StateWriter& to) const {
 }
 
 bool Recovery::restore(StateReader& from) {
-  // Every whole number counts something, and not to where the next one is not a number any more.
+  // Every whole number counts something: none is negative, or so large that counting on overflows.
   const auto read = [&](auto& value) {
     from.read(value);
     using T = std::remove_reference_t<decltype(value)>;
@@ -92,7 +92,7 @@ bool Recovery::restore(StateReader& from) {
   ProgressEstimate::visit_fields(estimate_, read);
   uint32_t records = 0;
   read(records);
-  // The level that is next has no record yet.
+  // Between two levels the next one has no record yet.
   const int next = phase_ == Phase::kStart && !done_ ? 1 : 0;
   from.demand(level_ >= 0 && level_ <= levels_ && entered_ == level_ + next &&
               static_cast<int64_t>(records) == levels_ - level_ + 1 - next && records >= 1);

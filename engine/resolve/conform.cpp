@@ -21,8 +21,8 @@ namespace plc {
 
 namespace {
 
-// Pairs that an annular transformation has cut are never old enough to be joined again: without
-// forces they would be, for ever.
+// The iteration never advances, so that pairs that an annular transformation has cut are never old
+// enough to be joined again: without forces that part them they would be cut and joined for ever.
 constexpr uint32_t kIteration = 1;
 
 // visit(u, v, squared length) for every edge, u < v.
@@ -39,13 +39,13 @@ void visit_edges(const Mesh& mesh, const Visit& visit) {
 struct LongEdge {
   float squared;
   uint32_t u, v;
-  // The longest on top of a queue, ties by ids.
+  // Puts the longest edge on top of a queue, and of equally long ones that of the lowest ids.
   friend bool operator<(const LongEdge& l, const LongEdge& r) {
     return std::tie(l.squared, r.u, r.v) < std::tie(r.squared, l.u, l.v);
   }
 };
 
-// At least so many: no face within (2) is larger than the equilateral one.
+// How many vertices there will be at least: no face within (2) is larger than the equilateral one.
 double vertices_needed(const Mesh& mesh) {
   const Vector<uint32_t> abc = mesh.faces();
   double area = 0;
@@ -111,9 +111,7 @@ void put_at_rest(Mesh& mesh, const Executor& executor) {
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     mesh.wake(v);
     mesh.velocity.set(v, {});
-    mesh.risk[v] = Mesh::kNearRisk;
     mesh.path[v] = 0;
-    mesh.operations[v] = 0;
     mesh.turns[v] = 0;
     mesh.cut_id[v] = 0;
   }
@@ -128,7 +126,8 @@ Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget si
   const uint32_t given = mesh.slots();
   if (Status s = divide_long_edges(mesh, counts); !s.ok()) return s;
   if (mesh.slots() != given) {
-    // Boxes over runs of ids that lie anywhere part nothing: the search would take quadratic time.
+    // The search has boxes around vertices of successive ids. Where these lie anywhere, all boxes
+    // overlap, and it would take quadratic time.
     mesh.renumber(morton_order(mesh, schedule), schedule);
     if (!meeting_faces(mesh, schedule, simd).empty()) {
       return {ErrorCode::kInvalidData,
@@ -137,7 +136,7 @@ Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget si
   }
   Detection detection(mesh, schedule, simd);
   Resolution resolution(mesh, schedule, simd, detection);
-  // Just within (2).
+  // So that the longest edge is just within (2).
   constexpr double kRoom = 1.01;
   double step = longest_edge(mesh) / static_cast<double>(kMaxEdge) * kRoom;
   while (step < delta && mesh.vertex_count() != 0) {

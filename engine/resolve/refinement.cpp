@@ -134,7 +134,7 @@ FaceVertices create_face_vertices(Mesh& mesh, uint32_t old_slots, const Executor
 
 using Corners = std::array<uint32_t, 3>;
 
-// Those that meet others, and those without an area.
+// The faces that meet others, and those that have no area.
 Vector<Corners> wrong_faces(const Mesh& mesh, const Executor& executor, SimdTarget simd) {
   constexpr size_t kBlock = 4096;
   Vector<Corners> wrong = meeting_faces(mesh, executor, simd);
@@ -151,14 +151,15 @@ Vector<Corners> wrong_faces(const Mesh& mesh, const Executor& executor, SimdTarg
   return wrong;
 }
 
-// The edge between two vertices that were created in faces gives way to the old one.
+// Undoes an inversion: where c and d were created in faces, the edge between them becomes the old
+// edge that these faces had in common. False where there is no such edge.
 bool give_back(Mesh& mesh, const Vector<uint8_t>& of_face, uint32_t c, uint32_t d) {
   if (of_face[c] == 0 || of_face[d] == 0 || !mesh.adjacent(c, d)) return false;
   invert_edge(mesh, edge_between(mesh, c, d));
   return true;
 }
 
-// The face comes back in which c was created.
+// Deletes c, which was created in a face, so that the face is there again.
 void give_back_face(Mesh& mesh, const Vector<uint8_t>& of_face, uint32_t c) {
   for (uint32_t k = 0; k < mesh.valence(c);) {
     if (!give_back(mesh, of_face, c, mesh.neighbor(c, k))) ++k;
@@ -167,9 +168,10 @@ void give_back_face(Mesh& mesh, const Vector<uint8_t>& of_face, uint32_t c) {
   delete_edge(mesh, edge_between(mesh, corner, c), mesh.at(corner));
 }
 
-// What was before comes back where the surface meets itself now: it did not then. Each round gives
-// back the edges of all wrong faces; where these have none of the inverted ones, a vertex has been
-// rounded onto the far side of what is nearer than that, and its face comes back whole.
+// Undoes the refinement where the surface meets itself now, as it did not before. Each round undoes
+// the inversions next to all wrong faces. Where none is left to undo, rounding has put a vertex on
+// the far side of a part of the surface that is nearer than a float can tell, and the face that it
+// was created in is restored.
 // of_face: by id, whether a vertex was created in a face.
 void undo_where_meeting(Mesh& mesh, const Vector<uint8_t>& of_face, const Executor& executor,
                         SimdTarget simd) {
@@ -221,7 +223,7 @@ Vector<uint32_t> living_order(const Mesh& mesh) {
 }
 
 void refine(Mesh& mesh, const Executor& executor, bool renumbering, SimdTarget simd) {
-  // Old vertices get the low ids, without gaps, so that new and old are told apart by id.
+  // Old vertices get the low ids, without gaps, so that ids tell new and old ones apart.
   if (!mesh.in_order())
     mesh.renumber(renumbering ? morton_order(mesh, executor) : living_order(mesh), executor);
   const uint32_t old_slots = mesh.slots();

@@ -67,7 +67,8 @@ void Resolution::restore(StateReader& from) {
 void Resolution::run(uint32_t iteration, const Vector<uint32_t>& moved_since,
                      OperationCounts& counts) {
   iteration_ = iteration;
-  std::fill(mesh_.operations.begin(), mesh_.operations.end(), uint8_t{0});
+  operations_.clear();
+  operations_.resize(mesh_.slots());
   pair_queue_ = moved_since;
   changed_.clear();
   counts.tetrahedron += tiny_.delete_turned_over(mesh_);
@@ -120,7 +121,7 @@ uint32_t Resolution::stamp_queue(const Vector<uint32_t>& queue) {
   return stamps_;
 }
 
-// Ascending, each living vertex once.
+// Makes a queue ascending, with each living vertex once.
 void Resolution::unique(Vector<uint32_t>& queue) {
   stamp_.resize(mesh_.slots(), 0);
   if (queue.size() < mesh_.slots() / kSortedQueue) {
@@ -195,7 +196,8 @@ Vector<Candidate> Resolution::pair_candidates(const Vector<uint32_t>& queue, boo
       out.push_back(*candidate);
     }
   };
-  // Nearest first whatever they ask for; a pair may have been found twice.
+  // The nearest pairs come first, whatever transformation they ask for. A pair may have been found
+  // from both of its ends.
   const auto nearer = [](const Candidate& l, const Candidate& r) {
     return std::tie(l.key, l.edge.u, l.edge.v, l.operation, l.edge.a) <
            std::tie(r.key, r.edge.u, r.edge.v, r.operation, r.edge.a);
@@ -299,13 +301,13 @@ bool Resolution::free_footprint(const Candidate& candidate, uint32_t claim) {
 // Where an operation is put off the vertices stay due, so that the next iteration sees it again.
 bool Resolution::within_limit(const Candidate& candidate) {
   const Edge& e = candidate.edge;
-  const auto busiest = std::max(mesh_.operations[e.u], mesh_.operations[e.v]);
+  const auto busiest = std::max(operations_[e.u], operations_[e.v]);
   if (busiest >= kMaxOperationsPerVertex) {
     mesh_.wake(e.u);
     mesh_.wake(e.v);
     return false;
   }
-  mesh_.operations[e.u] = mesh_.operations[e.v] = static_cast<uint8_t>(busiest + 1);
+  operations_[e.u] = operations_[e.v] = static_cast<uint8_t>(busiest + 1);
   return true;
 }
 

@@ -38,7 +38,7 @@ bool Resolution::apply(const Candidate& candidate, size_t trial, OperationCounts
 void Resolution::check_again(uint32_t v) {
   edge_queue_.push_back(v);
   pair_queue_.push_back(v);
-  mesh_.calm[v] = 0;
+  mesh_.touch(v);
   trials_.changed(v);
 }
 
@@ -47,9 +47,17 @@ void Resolution::enter_and_check(uint32_t v) {
   check_again(v);
 }
 
+// What limits the operations on a vertex limits those on all that is made of it.
+void Resolution::inherit_operations(uint32_t created, uint32_t from) {
+  if (operations_.size() < mesh_.slots()) operations_.resize(mesh_.slots());
+  operations_[created] = operations_[from];
+}
+
 bool Resolution::apply_creation(const Candidate& candidate, size_t trial) {
   if (trials_.admitted(candidate, trial) == Trials::kRefused) return false;
-  enter_and_check(create_on_edge(mesh_, candidate.edge));
+  const uint32_t created = create_on_edge(mesh_, candidate.edge);
+  inherit_operations(created, candidate.edge.u);
+  enter_and_check(created);
   return true;
 }
 
@@ -85,6 +93,7 @@ bool Resolution::apply_annular(const Candidate& candidate) {
   if (!guard_.embeds(mesh_, detection_.hash(), propose_annular(mesh_, cycle, copies))) return false;
   const auto right = cut_cycle(mesh_, cycle, copies, next_cut_++, iteration_);
   for (uint32_t i = 0; i < 3; ++i) {
+    inherit_operations(right[i], cycle.corner[i]);
     for (const uint32_t v : {cycle.corner[i], right[i]}) {
       enter_and_check(v);
       changed_.push_back(v);
@@ -96,7 +105,10 @@ bool Resolution::apply_annular(const Candidate& candidate) {
 bool Resolution::apply_axial(const Candidate& candidate) {
   const AxialPlan plan = plan_axial(mesh_, candidate.edge.u, candidate.edge.v);
   if (!guard_.embeds(mesh_, detection_.hash(), propose_axial(mesh_, plan))) return false;
-  for (const uint32_t v : join(mesh_, plan)) enter_and_check(v);
+  for (const uint32_t v : join(mesh_, plan)) {
+    inherit_operations(v, candidate.edge.u);
+    enter_and_check(v);
+  }
   return true;
 }
 

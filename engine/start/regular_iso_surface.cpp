@@ -153,7 +153,7 @@ Status regular_iso_surface(const ImageObject& object, const LatticeValues& value
       mesh.renumber(morton_order(mesh, schedule), schedule);
       return {};
     }
-    mesh = crossings.copy();
+    mesh.take(crossings.copy());
   }
   return {};
 }

@@ -52,7 +52,6 @@ std::array<uint32_t, 3> cut_cycle(Mesh& mesh, const Cycle& cycle,
   for (uint32_t i = 0; i < 3; ++i) {
     const uint32_t v = cycle.corner[i];
     right[i] = mesh.create(copies[i + 3].place, mesh.velocity.at(v));
-    mesh.operations[right[i]] = mesh.operations[v];
     mesh.turns[v] = turned(mesh.turns[v], kTransformationTurns);
     mesh.turns[right[i]] = with_turns(0, turns_of(mesh.turns[v]));
   }

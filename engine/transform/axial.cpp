@@ -29,7 +29,6 @@ Vector<uint32_t> create_intermediary(Mesh& mesh, uint32_t u, const Neighbors& ri
     const Vec3 speed =
         mesh.velocity.at(u) + (mesh.velocity.at(ring[i]) - mesh.velocity.at(u)) * kAxialReach;
     p.push_back(mesh.create(points[i], speed));
-    mesh.operations[p.back()] = mesh.operations[u];
     mesh.turns[p.back()] = with_turns(0, turns_of(mesh.turns[u]) + kTransformationTurns);
   }
   for (uint32_t i = 0; i < d; ++i) {

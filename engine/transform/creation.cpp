@@ -1,6 +1,5 @@
 #include "engine/transform/creation.h"
 
-#include <algorithm>
 #include <cassert>
 
 #include "engine/mesh/turns.h"
@@ -10,9 +9,7 @@ namespace plc {
 uint32_t create_on_edge(Mesh& mesh, const Edge& e) {
   assert(has_edge(mesh, e));
   const Vec3 speed = midpoint(mesh.velocity.at(e.u), mesh.velocity.at(e.v));
-  const auto count = std::max(mesh.operations[e.u], mesh.operations[e.v]);
   const uint32_t w = mesh.create(midpoint(mesh.at(e.u), mesh.at(e.v)), speed);
-  mesh.operations[w] = count;
   mesh.turns[w] = turns_between(mesh.turns[e.u], mesh.turns[e.v]);
   Neighbors ring;
   for (const uint32_t x : {e.u, e.a, e.v, e.b}) ring.push_back(x);

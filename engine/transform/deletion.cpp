@@ -45,7 +45,6 @@ void delete_edge(Mesh& mesh, const Edge& e, Vec3 place) {
     if (x != e.u && x != e.a && x != e.b) mesh.replace(x, e.v, e.u);
   }
   mesh.velocity.set(e.u, midpoint(mesh.velocity.at(e.u), mesh.velocity.at(e.v)));
-  mesh.operations[e.u] = std::max(mesh.operations[e.u], mesh.operations[e.v]);
   mesh.turns[e.u] =
       with_turns(mesh.turns[e.u], std::max(turns_of(mesh.turns[e.u]), turns_of(mesh.turns[e.v])));
   mesh.place(e.u, place);

@@ -337,6 +337,64 @@ TEST_CASE("the model is what was asked for, with the sign of the object's side",
   CHECK_FALSE(plc::recovery_spec(p, 1).inside_above);
 }
 
+TEST_CASE("the engine's own defaults are those that are shipped", "[parameters]") {
+  const plc::RecoverySpec shipped = plc::recovery_spec(defaults(), 1), own;
+  CHECK(own.model.curvature == shipped.model.curvature);
+  CHECK(own.model.spring == shipped.model.spring);
+  CHECK(own.model.rest_length == shipped.model.rest_length);
+  CHECK(own.model.rest_length_value == shipped.model.rest_length_value);
+  CHECK(own.model.attraction == shipped.model.attraction);
+  CHECK(own.model.gradient_normal == shipped.model.gradient_normal);
+  CHECK(own.model.gradient_tangent == shipped.model.gradient_tangent);
+  CHECK(own.model.mass == shipped.model.mass);
+  CHECK(own.model.damping == shipped.model.damping);
+  CHECK(own.model.time_step == shipped.model.time_step);
+  CHECK(own.model.max_move == shipped.model.max_move);
+  CHECK(own.model.bound == shipped.model.bound);
+  CHECK(own.sizes.has_value() == shipped.sizes.has_value());
+  CHECK(own.inside_above == shipped.inside_above);
+  CHECK(own.gradient_bound == shipped.gradient_bound);
+  CHECK(own.pad_voxels == shipped.pad_voxels);
+  CHECK(own.anisotropy == shipped.anisotropy);
+  CHECK(own.start.init == shipped.start.init);
+  CHECK(own.start.bubbles == shipped.start.bubbles);
+  CHECK(own.late_bubbles == shipped.late_bubbles);
+  CHECK(own.sleeping == shipped.sleeping);
+  CHECK(own.epsilon == shipped.epsilon);
+  CHECK(own.calm_speed == shipped.calm_speed);
+  CHECK(own.max_iterations == shipped.max_iterations);
+}
+
+TEST_CASE("the pyramid's own defaults are those that are shipped, of an image from 0 to 1",
+          "[parameters]") {
+  plc_parameters p = defaults();
+  p.window_low = 0;
+  p.window_high = 1;
+  REQUIRE(derive(p).ok());
+  const plc::PyramidSpec shipped = plc::pyramid_spec(p), own;
+  CHECK(own.reduction == shipped.reduction);
+  CHECK(own.reduction == plc::kRefinement);
+  CHECK(own.levels == shipped.levels);
+  CHECK(own.window_low == shipped.window_low);
+  CHECK(own.window_high == shipped.window_high);
+  CHECK(own.pad_value == shipped.pad_value);
+  CHECK(own.pad_voxels == shipped.pad_voxels);
+}
+
+TEST_CASE("the sizes of an adaptive mesh are the engine's own where nothing is said of them",
+          "[parameters]") {
+  plc_parameters p = defaults();
+  p.mesh = PLC_MESH_ADAPTIVE;
+  REQUIRE(plc::derive_mesh(1, p).ok());
+  const auto shipped = plc::recovery_spec(p, 1).sizes;
+  const plc::SizeSpec own;
+  REQUIRE(shipped.has_value());
+  CHECK(own.finest == Approx(shipped->finest));
+  CHECK(own.coarsest == Approx(shipped->coarsest));
+  CHECK(own.tolerance == Approx(shipped->tolerance));
+  CHECK(own.slope == shipped->slope);
+}
+
 TEST_CASE("the pyramid is built with the parameters' window, padding and reduction",
           "[parameters]") {
   plc_parameters p = defaults();

@@ -90,13 +90,13 @@ void for_each_operation(const Soup& soup, double delta, const Visit& visit) {
     if (common.size() == 2 && mesh.valence(e.a) > 3 && mesh.valence(e.b) > 3) {
       const plc::Vec3 place = plc::midpoint(mesh.at(e.u), mesh.at(e.v));
       visit(mesh, plc::propose_deletion(mesh, e, place), [&] { plc::delete_edge(mesh, e, place); });
-      mesh = fresh();
+      mesh.take(fresh());
     }
     visit(mesh, plc::propose_creation(mesh, e), [&] { plc::create_on_edge(mesh, e); });
-    mesh = fresh();
+    mesh.take(fresh());
     if (mesh.valence(e.u) > 3 && mesh.valence(e.v) > 3 && !mesh.adjacent(e.a, e.b)) {
       visit(mesh, plc::propose_inversion(mesh, e), [&] { plc::invert_edge(mesh, e); });
-      mesh = fresh();
+      mesh.take(fresh());
     }
     for (const uint32_t o : common) {
       if (o == e.a || o == e.b) continue;
@@ -104,7 +104,7 @@ void for_each_operation(const Soup& soup, double delta, const Visit& visit) {
       const auto copies = plc::annular_copies(mesh, cycle, plc::kAnnularRetreat);
       visit(mesh, plc::propose_annular(mesh, cycle, copies),
             [&] { plc::cut_cycle(mesh, cycle, copies, 1, 1); });
-      mesh = fresh();
+      mesh.take(fresh());
     }
   });
   for (uint32_t u = 0; u < whole.slots(); ++u) {

@@ -34,16 +34,18 @@ class Movement {
   int64_t guard(const plc::Executor& executor = samples::kSerial, bool all_due = true) {
     plc::MotionGuard guard(mesh_, executor, plc::best_simd_target());
     hash_.build(mesh_, plc::kMinApart * static_cast<float>(mesh_.delta), executor);
-    plc::Vector<uint32_t> due;
+    plc::Vector<uint32_t> all, due;
     for (uint32_t v = 0; v < mesh_.slots(); ++v) {
-      if (all_due && mesh_.alive(v)) due.push_back(v);
+      if (mesh_.alive(v)) all.push_back(v);
     }
+    guard.assess(all, {});  // nothing was near so far
+    if (all_due) due = all;
     plc::Vector<uint32_t> blocks(mesh_.padded() / plc::kRingLanes);
     std::iota(blocks.begin(), blocks.end(), 0U);
     guard.find_folds(blocks);
     plc::Surroundings around(mesh_, executor, plc::best_simd_target());
-    around.search(due, hash_);
-    around.search_folded(guard.newly_folded(), hash_);
+    around.search(due, hash_, &guard.risk());
+    around.search_folded(guard.newly_folded(), hash_, guard.risk());
     guard.assess(due, around.at_risk());
     plc::Vector<uint32_t> back;
     const int64_t count = guard.take_back(before_, hash_, back);
@@ -237,7 +239,6 @@ TEST_CASE("only the risk of vertices that are due is looked at again", "[motion_
   samples::fill_mesh(mesh, samples::sphere(3), kDelta);
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     mesh.normal.set(v, plc::vertex_normal(mesh, v));
-    mesh.risk[v] = 1;
   }
   plc::MotionGuard guard(mesh, samples::kSerial, plc::best_simd_target());
   plc::SpatialHash hash;
@@ -246,6 +247,6 @@ TEST_CASE("only the risk of vertices that are due is looked at again", "[motion_
   around.search({3, 50}, hash);
   guard.assess({3, 50}, around.at_risk());
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
-    CHECK(mesh.risk[v] == (v == 3 || v == 50 ? 0 : 1));
+    CHECK(guard.risk()[v] == (v == 3 || v == 50 ? 0 : 1));
   }
 }

@@ -64,9 +64,7 @@ inline uint64_t iso_force(SimdTarget simd) {
   const auto n = static_cast<uint32_t>(at.size());
   const Three normal(n, -1, 1, 43);
   Three force(n, -1, 1, 46);
-  const auto [nx, ny, nz] = normal.in();
-  const auto [fx, fy, fz] = force.out();
-  kernels::iso_force(simd, image.view, at.data(), nx, ny, nz, -1.2F, 0.4F, 0, n, fx, fy, fz);
+  kernels::iso_force(simd, image.view, at.data(), normal.in(), {-1.2F, 0.4F}, 0, n, force.out());
   return hash_of(force);
 }
 
@@ -89,10 +87,8 @@ inline uint64_t gradient_force(SimdTarget simd) {
   const auto n = static_cast<uint32_t>(at.size());
   const Three normal(n, -1, 1, 54);
   Three force(n, -1, 1, 57);
-  const auto [nx, ny, nz] = normal.in();
-  const auto [fx, fy, fz] = force.out();
-  kernels::gradient_force(simd, view, at.data(), nx, ny, nz, 1.3F, -0.4F, {1, 0.5F, 3}, 0, n, fx,
-                          fy, fz);
+  kernels::gradient_force(simd, view, at.data(), normal.in(), {1.3F, -0.4F, {1, 0.5F, 3}}, 0, n,
+                          force.out());
   return hash_of(force);
 }
 
@@ -137,7 +133,7 @@ inline uint64_t reduce_x(SimdTarget simd) {
   const Taps taps(kWidth, 53, 5, 67);
   std::vector<float> out(size_t{21} * 53);
   plc::Buffer<float> scratch(kernels::reduce_x_scratch(kWidth));
-  kernels::reduce_x(simd, taps.view, 53, rows.row[0], kWidth, kWidth, 21, out.data(), 53,
+  kernels::reduce_x(simd, taps.view, {rows.row[0], kWidth, kWidth}, 21, {out.data(), 53, 53},
                     scratch.data());
   return hash_of(out);
 }
@@ -146,7 +142,8 @@ inline uint64_t reduce_y(SimdTarget simd) {
   const Rows<21> rows;
   const Taps taps(21, 12, 4, 68);
   std::vector<float> out(size_t{12} * kWidth);
-  kernels::reduce_y(simd, taps.view, 0, 12, rows.row[0], kWidth, kWidth, out.data(), kWidth);
+  kernels::reduce_y(simd, taps.view, 0, 12, {rows.row[0], kWidth, kWidth},
+                    {out.data(), kWidth, kWidth});
   return hash_of(out);
 }
 

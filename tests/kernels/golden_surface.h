@@ -38,16 +38,14 @@ inline uint64_t laplacian(SimdTarget simd) {
 inline uint64_t curvature_force(SimdTarget simd) {
   const Rings r;
   Three force(r.n);
-  const auto [x, y, z] = force.out();
-  kernels::curvature_force(simd, r.view, r.position, 0.3F, 0, r.n, x, y, z);
+  kernels::curvature_force(simd, r.view, r.position, 0.3F, 0, r.n, force.out());
   return hash_of(force);
 }
 
 inline uint64_t spring_force_in(SimdTarget simd, const plc::Metric& metric) {
   const Rings r;
   Three force(r.n, -1, 1, 5);
-  const auto [x, y, z] = force.out();
-  kernels::spring_force(simd, r.view, r.position, 0.01F, 1.7F, metric, 0, r.n, x, y, z);
+  kernels::spring_force(simd, r.view, r.position, {0.01F, 1.7F, metric}, 0, r.n, force.out());
   return hash_of(force);
 }
 inline uint64_t spring_force(SimdTarget simd) {
@@ -60,8 +58,7 @@ inline uint64_t spring_force_stretched(SimdTarget simd) {
 inline uint64_t normals(SimdTarget simd) {
   const Rings r;
   Three normal(r.n);
-  const auto [x, y, z] = normal.out();
-  kernels::normals(simd, r.view, r.position, r.all, x, y, z);
+  kernels::normals(simd, r.view, r.position, r.all, normal.out());
   return hash_of(normal);
 }
 
@@ -69,8 +66,7 @@ inline uint64_t normals_and_laplacian(SimdTarget simd) {
   const Rings r;
   Three normal(r.n);
   std::vector<Float4> mean(r.n);
-  const auto [x, y, z] = normal.out();
-  kernels::normals_and_laplacian(simd, r.view, r.position, r.all, x, y, z, mean.data());
+  kernels::normals_and_laplacian(simd, r.view, r.position, r.all, normal.out(), mean.data());
   Fnv hash;
   add(hash, normal);
   hash.add_all(flatten(mean));
@@ -80,10 +76,7 @@ inline uint64_t normals_and_laplacian(SimdTarget simd) {
 inline uint64_t metric_normals(SimdTarget simd) {
   const Three n(512, -1, 1, 7);
   Three m(512), step(512);
-  const auto [x, y, z] = n.in();
-  const auto [mx, my, mz] = m.out();
-  const auto [sx, sy, sz] = step.out();
-  kernels::metric_normals(simd, kStretched, x, y, z, 0, 512, mx, my, mz, sx, sy, sz);
+  kernels::metric_normals(simd, kStretched, n.in(), 0, 512, m.out(), step.out());
   Fnv hash;
   add(hash, m);
   add(hash, step);
@@ -102,10 +95,9 @@ inline uint64_t edge_violations(SimdTarget simd) {
 inline uint64_t turned_faces(SimdTarget simd) {
   const Rings r;
   Three normal(r.n);
-  const auto [x, y, z] = normal.out();
-  kernels::normals(SimdTarget::kScalar, r.view, r.position, r.all, x, y, z);
+  kernels::normals(SimdTarget::kScalar, r.view, r.position, r.all, normal.out());
   plc::Vector<uint8_t> flags(r.n);
-  kernels::turned_faces(simd, r.view, r.position, r.all, x, y, z, 0.1F, flags.data());
+  kernels::turned_faces(simd, r.view, r.position, r.all, normal.in(), 0.1F, flags.data());
   Fnv hash;
   hash.add_all(flags);
   return hash.value();

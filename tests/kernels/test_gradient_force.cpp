@@ -68,6 +68,8 @@ struct Streams {
   Streams(uint32_t count, float low, float high, uint32_t seed) {
     for (uint32_t a = 0; a < 3; ++a) axis[a] = random_floats(count, low, high, seed + a);
   }
+  kernels::ConstFloat3s in() const { return {axis[0].data(), axis[1].data(), axis[2].data()}; }
+  kernels::Float3s out() { return {axis[0].data(), axis[1].data(), axis[2].data()}; }
 };
 
 Streams unit_normals(uint32_t count, uint32_t seed) {
@@ -86,27 +88,19 @@ std::vector<Float4> places(uint32_t count, uint32_t seed) {
   return all;
 }
 
-struct Coefficients {
-  float along_normal, along_tangent;
-  std::array<float, 3> map;
-};
-
 void apply(SimdTarget simd, const GradientView& view, const std::vector<Float4>& position,
-           const Streams& n, const Coefficients& c, uint32_t begin, uint32_t end, Streams& f) {
-  kernels::gradient_force(simd, view, position.data(), n.axis[0].data(), n.axis[1].data(),
-                          n.axis[2].data(), c.along_normal, c.along_tangent, c.map, begin, end,
-                          f.axis[0].data(), f.axis[1].data(), f.axis[2].data());
+           const Streams& n, const kernels::GradientPull& c, uint32_t begin, uint32_t end,
+           Streams& f) {
+  kernels::gradient_force(simd, view, position.data(), n.in(), c, begin, end, f.out());
 }
 
 void apply_twin(const GradientView& view, const std::vector<Float4>& position, const Streams& n,
-                const Coefficients& c, uint32_t begin, uint32_t end, Streams& f) {
-  scalar::gradient_force(view, position.data(), n.axis[0].data(), n.axis[1].data(),
-                         n.axis[2].data(), c.along_normal, c.along_tangent, c.map, begin, end,
-                         f.axis[0].data(), f.axis[1].data(), f.axis[2].data());
+                const kernels::GradientPull& c, uint32_t begin, uint32_t end, Streams& f) {
+  scalar::gradient_force(view, position.data(), n.in(), c, begin, end, f.out());
 }
 
 // (8) as it is written, with delta in the coefficients: (alpha - beta) (g . n) n + beta g.
-Vector equation_8(const Vector& g, const Vector& n, const Coefficients& c) {
+Vector equation_8(const Vector& g, const Vector& n, const kernels::GradientPull& c) {
   const double along = g[0] * n[0] + g[1] * n[1] + g[2] * n[2];
   const double alpha = double{c.along_normal}, beta = double{c.along_tangent};
   Vector f{};
@@ -127,9 +121,9 @@ TEST_CASE("the gradient force is equation (8), added to what is there", "[kernel
   const uint32_t count = 160;
   const std::vector<Float4> position = places(count, 2);
   const Streams n = unit_normals(count, 3);
-  for (const Coefficients& c :
-       {Coefficients{1.3F, -0.4F, {1, 1, 1}}, Coefficients{0.6F, 0.6F, {1, 1, 1}},
-        Coefficients{-0.7F, 0.2F, {0.5F, 2.0F, 3.0F}}}) {
+  for (const kernels::GradientPull& c :
+       {kernels::GradientPull{1.3F, -0.4F, {1, 1, 1}}, kernels::GradientPull{0.6F, 0.6F, {1, 1, 1}},
+        kernels::GradientPull{-0.7F, 0.2F, {0.5F, 2.0F, 3.0F}}}) {
     for (const SimdTarget simd : plc::available_simd_targets()) {
       for (const uint32_t begin : {0U, 16U, 144U}) {
         const uint32_t end = begin == 16 ? 96 : count;
@@ -177,7 +171,7 @@ TEST_CASE("no position makes the gradient force read outside the field", "[kerne
   }
   const auto count = static_cast<uint32_t>(position.size());
   const Streams n = unit_normals(count, 5);
-  const Coefficients c{1.0F, 1.0F, {1, 1, 1}};
+  const kernels::GradientPull c{1.0F, 1.0F, {1, 1, 1}};
   for (const float scale : {1.0F, 1e30F, -1.0F, 0.0F}) {
     for (float& s : field.view.scale) s = scale;
     for (const SimdTarget simd : plc::available_simd_targets()) {

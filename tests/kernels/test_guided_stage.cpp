@@ -77,9 +77,8 @@ struct Stage {
     const kernels::SurfaceForces f = forces();
     const kernels::Float3s force = three(18);
     const uint32_t n = rings.count();
-    scalar::curvature_force(f.ring, f.laplacian, f.curvature, 0, n, force.x, force.y, force.z);
-    scalar::iso_force(f.image, f.position, f.normal.x, f.normal.y, f.normal.z, f.attraction, f.iso,
-                      0, n, force.x, force.y, force.z);
+    scalar::curvature_force(f.ring, f.laplacian, f.curvature, 0, n, force);
+    scalar::iso_force(f.image, f.position, f.normal, {f.attraction, f.iso}, 0, n, force);
     scalar::rk4_stage(stage, kNewton, rk4(), fixed(18), all());
   }
 };

@@ -158,6 +158,7 @@ TEST_CASE("the iso-potential force is equation (7), added to what is there", "[k
   const std::vector<float> nx = random_floats(count, -1, 1, 7);
   const std::vector<float> ny = random_floats(count, -1, 1, 8);
   const std::vector<float> nz = random_floats(count, -1, 1, 9);
+  const kernels::ConstFloat3s n{nx.data(), ny.data(), nz.data()};
   const float coefficient = -1.7F, iso = 0.3F;
   for (const SimdTarget simd : plc::available_simd_targets()) {
     for (const uint32_t begin : {0U, 16U, 144U}) {
@@ -166,10 +167,10 @@ TEST_CASE("the iso-potential force is equation (7), added to what is there", "[k
       std::vector<float> got[3], twin[3];
       for (uint32_t a = 0; a < 3; ++a) got[a] = twin[a] = random_floats(count, -5, 5, 10 + a);
       const std::vector<float> before[3] = {got[0], got[1], got[2]};
-      kernels::iso_force(simd, image.view, position.data(), nx.data(), ny.data(), nz.data(),
-                         coefficient, iso, begin, end, got[0].data(), got[1].data(), got[2].data());
-      scalar::iso_force(image.view, position.data(), nx.data(), ny.data(), nz.data(), coefficient,
-                        iso, begin, end, twin[0].data(), twin[1].data(), twin[2].data());
+      kernels::iso_force(simd, image.view, position.data(), n, {coefficient, iso}, begin, end,
+                         {got[0].data(), got[1].data(), got[2].data()});
+      scalar::iso_force(image.view, position.data(), n, {coefficient, iso}, begin, end,
+                        {twin[0].data(), twin[1].data(), twin[2].data()});
       const float* normal[3] = {nx.data(), ny.data(), nz.data()};
       for (int a = 0; a < 3; ++a) {
         REQUIRE(first_difference(got[a], twin[a]) == -1);
@@ -222,9 +223,9 @@ TEMPLATE_TEST_CASE("a typed image is sampled and pulls as the same image in floa
         REQUIRE(first_difference(got, twin) == -1);
         std::vector<float> pull(3 * count), unit_pull(3 * count);
         const auto force = [&](const ImageView& view, std::vector<float>& f) {
-          kernels::iso_force(simd, view, position.data(), normal.data(), normal.data(),
-                             normal.data(), 1.5F, 0.4F, 0, count, f.data(), f.data() + count,
-                             f.data() + 2 * count);
+          kernels::iso_force(simd, view, position.data(),
+                             {normal.data(), normal.data(), normal.data()}, {1.5F, 0.4F}, 0, count,
+                             {f.data(), f.data() + count, f.data() + 2 * count});
         };
         force(image.view, pull);
         force(unit, unit_pull);

@@ -56,6 +56,7 @@ struct Streams {
     values.insert(values.end(), z.begin(), z.end());
     return values;
   }
+  kernels::Float3s out() { return {x.data(), y.data(), z.data()}; }
 };
 
 // Within `tolerance` of the reference on [begin, end), not written elsewhere.
@@ -128,10 +129,8 @@ TEST_CASE("the curvature force is equation (5)", "[kernels]") {
       CAPTURE(plc::simd_target_name(simd), begin, end);
       Streams got(rings.count(), kUntouched);
       Streams twin(rings.count(), kUntouched);
-      kernels::curvature_force(simd, rings.view(), laplacian.data(), alpha, begin, end,
-                               got.x.data(), got.y.data(), got.z.data());
-      scalar::curvature_force(rings.view(), laplacian.data(), alpha, begin, end, twin.x.data(),
-                              twin.y.data(), twin.z.data());
+      kernels::curvature_force(simd, rings.view(), laplacian.data(), alpha, begin, end, got.out());
+      scalar::curvature_force(rings.view(), laplacian.data(), alpha, begin, end, twin.out());
       REQUIRE(first_difference(got.all(), twin.all()) == -1);
       require_near(got, expected, begin, end, 1e-4);
     }
@@ -159,10 +158,10 @@ TEST_CASE("the spring force is equation (6), added to what is there", "[kernels]
         CAPTURE(plc::simd_target_name(simd), begin, end, rest);
         Streams got(rings.count(), kUntouched);
         Streams twin(rings.count(), kUntouched);
-        kernels::spring_force(simd, rings.view(), rings.position.data(), alpha, rest, metric, begin,
-                              end, got.x.data(), got.y.data(), got.z.data());
-        scalar::spring_force(rings.view(), rings.position.data(), alpha, rest, metric, begin, end,
-                             twin.x.data(), twin.y.data(), twin.z.data());
+        kernels::spring_force(simd, rings.view(), rings.position.data(), {alpha, rest, metric},
+                              begin, end, got.out());
+        scalar::spring_force(rings.view(), rings.position.data(), {alpha, rest, metric}, begin, end,
+                             twin.out());
         REQUIRE(first_difference(got.all(), twin.all()) == -1);
         require_near(got, expected, begin, end, 2e-3);
       }
@@ -190,10 +189,8 @@ TEST_CASE("normals are the sum of the cross products around the ring, of length 
       Streams got(rings.count(), kUntouched);
       Streams twin(rings.count(), kUntouched);
       const auto blocks = plc::Blocks::range(begin, end);
-      kernels::normals(simd, rings.view(), rings.position.data(), blocks, got.x.data(),
-                       got.y.data(), got.z.data());
-      scalar::normals(rings.view(), rings.position.data(), blocks, twin.x.data(), twin.y.data(),
-                      twin.z.data());
+      kernels::normals(simd, rings.view(), rings.position.data(), blocks, got.out());
+      scalar::normals(rings.view(), rings.position.data(), blocks, twin.out());
       REQUIRE(first_difference(got.all(), twin.all()) == -1);
       require_near(got, expected, begin, end, 1e-4);
     }
@@ -209,16 +206,15 @@ TEST_CASE("normals and Laplacians of one walk have the bits of two, on the liste
   std::vector<Float4> expected(rings.count(), untouched);
   Streams normal(rings.count(), kUntouched);
   scalar::laplacian(rings.view(), rings.position.data(), blocks, expected.data());
-  scalar::normals(rings.view(), rings.position.data(), blocks, normal.x.data(), normal.y.data(),
-                  normal.z.data());
+  scalar::normals(rings.view(), rings.position.data(), blocks, normal.out());
   REQUIRE(expected[3 * plc::kRingLanes].w == 0);
   REQUIRE(expected[2 * plc::kRingLanes].w == kUntouched);
   for (const SimdTarget simd : plc::available_simd_targets()) {
     CAPTURE(plc::simd_target_name(simd));
     std::vector<Float4> laplacian(rings.count(), untouched);
     Streams got(rings.count(), kUntouched);
-    kernels::normals_and_laplacian(simd, rings.view(), rings.position.data(), blocks, got.x.data(),
-                                   got.y.data(), got.z.data(), laplacian.data());
+    kernels::normals_and_laplacian(simd, rings.view(), rings.position.data(), blocks, got.out(),
+                                   laplacian.data());
     CHECK(first_difference(flatten(laplacian), flatten(expected)) == -1);
     CHECK(first_difference(got.all(), normal.all()) == -1);
   }
@@ -239,8 +235,7 @@ TEST_CASE("the normal of a vertex seen with its ring counter-clockwise points at
   const RingView view{columns.data(), valence.data(), nullptr};
   for (const SimdTarget simd : plc::available_simd_targets()) {
     Streams got(plc::kRingLanes, kUntouched);
-    kernels::normals(simd, view, position.data(), plc::Blocks{nullptr, 1, 0}, got.x.data(),
-                     got.y.data(), got.z.data());
+    kernels::normals(simd, view, position.data(), plc::Blocks{nullptr, 1, 0}, got.out());
     REQUIRE(got.x[0] == 0.0F);
     REQUIRE(got.y[0] == 0.0F);
     REQUIRE(got.z[0] == 1.0F);
@@ -329,8 +324,8 @@ TEST_CASE("a face that is turned against the normal is found, in columns and tai
   for (const SimdTarget simd : plc::available_simd_targets()) {
     for (const float most : {0.0F, 0.3F}) {
       plc::Vector<uint8_t> flags(count, 9);
-      kernels::turned_faces(simd, rings.view(), rings.position.data(), all, n, n + count,
-                            n + 2 * count, most, flags.data());
+      kernels::turned_faces(simd, rings.view(), rings.position.data(), all,
+                            {n, n + count, n + 2 * count}, most, flags.data());
       for (uint32_t v = 0; v < count; ++v) {
         const auto& ring = rings.rings[v];
         int expected = 0;
@@ -379,8 +374,7 @@ TEST_CASE("normals of a metric are those of the surface with its axes stretched"
   const plc::Metric metric = kMetrics[1];
   Streams normal(n, 0), stretched(n, 0);
   const auto measure = [&](Streams& to) {
-    scalar::normals(rings.view(), rings.position.data(), plc::Blocks::range(0, n), to.x.data(),
-                    to.y.data(), to.z.data());
+    scalar::normals(rings.view(), rings.position.data(), plc::Blocks::range(0, n), to.out());
   };
   measure(normal);
   for (Float4& p : rings.position) p = {p.x * metric.x, p.y * metric.y, p.z * metric.z, 0};
@@ -392,9 +386,7 @@ TEST_CASE("normals of a metric are those of the surface with its axes stretched"
   }
   const auto run = [&](const auto& kernel) {
     std::array<Streams, 2> to{Streams(n, 0), Streams(n, 0)};
-    kernel(metric, normal.x.data(), normal.y.data(), normal.z.data(), uint32_t{0}, n,
-           to[0].x.data(), to[0].y.data(), to[0].z.data(), to[1].x.data(), to[1].y.data(),
-           to[1].z.data());
+    kernel(metric, normal.out(), uint32_t{0}, n, to[0].out(), to[1].out());
     return to;
   };
   const auto twin = run(scalar::metric_normals);

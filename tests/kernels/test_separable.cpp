@@ -37,14 +37,14 @@ TEST_CASE("a pass along X sums each row's voxels by the taps", "[kernels]") {
         // The last row ends where the allocation ends: a sanitizer sees reads past it.
         const std::vector<float> in = random_floats((rows - 1) * in_stride + inputs, 0.0F, 1.0F, 2);
         std::vector<float> twin(rows * out_stride, kUntouched);
-        scalar::reduce_x(axis.view, outputs, in.data(), inputs, in_stride, rows, twin.data(),
-                         out_stride, nullptr);
+        scalar::reduce_x(axis.view, {in.data(), inputs, in_stride}, rows,
+                         {twin.data(), outputs, out_stride}, nullptr);
         for (const SimdTarget simd : plc::available_simd_targets()) {
           CAPTURE(plc::simd_target_name(simd), inputs, outputs, taps, rows);
           std::vector<float> got(rows * out_stride, kUntouched);
           plc::Buffer<float> scratch(kernels::reduce_x_scratch(inputs));
-          kernels::reduce_x(simd, axis.view, outputs, in.data(), inputs, in_stride, rows,
-                            got.data(), out_stride, scratch.data());
+          kernels::reduce_x(simd, axis.view, {in.data(), inputs, in_stride}, rows,
+                            {got.data(), outputs, out_stride}, scratch.data());
           REQUIRE(first_difference(got, twin) == -1);
           for (size_t r = 0; r < rows; ++r) {
             for (size_t i = 0; i < out_stride; ++i) {
@@ -71,11 +71,13 @@ TEST_CASE("a pass along Y sums rows by the taps of any part of the outputs", "[k
            std::vector<std::array<size_t, 2>>{{0, 13}, {5, 9}, {12, 13}, {4, 4}}) {
         const float* from = in.data() + static_cast<size_t>(axis.first[begin]) * stride;
         std::vector<float> twin(outputs * stride, kUntouched);
-        scalar::reduce_y(axis.view, begin, end, from, stride, width, twin.data(), stride);
+        scalar::reduce_y(axis.view, begin, end, {from, width, stride},
+                         {twin.data(), width, stride});
         for (const SimdTarget simd : plc::available_simd_targets()) {
           CAPTURE(plc::simd_target_name(simd), taps, width, begin, end);
           std::vector<float> got(outputs * stride, kUntouched);
-          kernels::reduce_y(simd, axis.view, begin, end, from, stride, width, got.data(), stride);
+          kernels::reduce_y(simd, axis.view, begin, end, {from, width, stride},
+                            {got.data(), width, stride});
           REQUIRE(first_difference(got, twin) == -1);
           for (size_t j = 0; j < outputs; ++j) {
             for (size_t i = 0; i < stride; ++i) {

@@ -77,7 +77,7 @@ bool restored(const Alter& alter) {
 
 }  // namespace
 
-TEST_CASE("a new vertex has its position, no ring and is due for a check", "[mesh]") {
+TEST_CASE("a new vertex has its position and no ring", "[mesh]") {
   Mesh mesh;
   const uint32_t v = mesh.create({1, 2, 3}, {4, 5, 6});
   CHECK(v == 0);
@@ -85,8 +85,6 @@ TEST_CASE("a new vertex has its position, no ring and is due for a check", "[mes
   CHECK(mesh.padded() == plc::kRingLanes);
   CHECK(mesh.vertex_count() == 0);
   CHECK_FALSE(mesh.alive(v));
-  CHECK(mesh.idle[v] == Mesh::kAwake);
-  CHECK(mesh.risk[v] == 1);
   CHECK(mesh.at(v).y == 2);
   CHECK(mesh.at(v).z == 3);
   CHECK(mesh.velocity.at(v).x == 4);
@@ -120,13 +118,10 @@ TEST_CASE("deleted ids are used again, the last one first", "[mesh]") {
   CHECK(mesh.slots() == 18);
   CHECK_FALSE(mesh.alive(7));
   mesh.path[7] = 9;
-  mesh.operations[7] = 40;
   mesh.cut_id[7] = 5;
   CHECK(mesh.create({}, {}) == 7);
   CHECK(mesh.path[7] == 0);
-  CHECK(mesh.operations[7] == 0);
   CHECK(mesh.cut_id[7] == 0);
-  CHECK(mesh.idle[7] == Mesh::kAwake);
   CHECK(mesh.create({}, {}) == 3);
   CHECK(mesh.create({}, {}) == 18);
 }
@@ -281,9 +276,6 @@ TEST_CASE("renumbering changes nothing but the ids", "[mesh]") {
     mesh.normal.set(v, {f, 3, 4});
     mesh.displacement.set(v, {f, 5, 6});
     mesh.path[v] = f;
-    mesh.idle[v] = static_cast<uint8_t>(v);
-    mesh.risk[v] = static_cast<uint8_t>(v % 2);
-    mesh.operations[v] = static_cast<uint8_t>(v + 1);
     mesh.cut_id[v] = v + 2;
     mesh.cut_iteration[v] = v + 3;
   }
@@ -312,9 +304,6 @@ TEST_CASE("renumbering changes nothing but the ids", "[mesh]") {
     CHECK(mesh.normal.at(i).x == f);
     CHECK(mesh.displacement.at(i).x == f);
     CHECK(mesh.path[i] == f);
-    CHECK(mesh.idle[i] == v);
-    CHECK(mesh.risk[i] == v % 2);
-    CHECK(mesh.operations[i] == v + 1);
     CHECK(mesh.cut_id[i] == v + 2);
     CHECK(mesh.cut_iteration[i] == v + 3);
     REQUIRE(mesh.valence(i) == rings[v].size());
@@ -473,9 +462,6 @@ TEST_CASE("vertices that are created at once are as those created one by one", "
   for (uint32_t v = 0; v < one.slots(); ++v) {
     REQUIRE(many.valence(v) == one.valence(v));
     for (uint32_t k = 0; k < one.valence(v); ++k) CHECK(many.neighbor(v, k) == one.neighbor(v, k));
-    CHECK(many.risk[v] == one.risk[v]);
-    CHECK(many.idle[v] == one.idle[v]);
-    CHECK(many.calm[v] == one.calm[v]);
     CHECK(plc::squared_distance(many.at(v), one.at(v)) == 0);
   }
 }

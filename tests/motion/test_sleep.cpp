@@ -118,7 +118,7 @@ TEST_CASE("a vertex that moves along its normal wakes its neighbours, one that s
       sleep.observe();
     }
     for (uint32_t k = 0; k < mesh.valence(v); ++k) {
-      CHECK((mesh.calm[mesh.neighbor(v, k)] < plc::kCalmPeriod) == !slides);
+      CHECK((sleep.calm()[mesh.neighbor(v, k)] < plc::kCalmPeriod) == !slides);
     }
   }
 }

@@ -198,9 +198,9 @@ TEST_CASE("the gradient force draws vertices to the ridge of a shell from both s
     radius[i] = i % 2 == 0 ? 9.0F : 15.0F;
     position[i] = {20 + radius[i] * n[0][i], 20 + radius[i] * n[1][i], 20 + radius[i] * n[2][i], 0};
   }
-  plc::kernels::gradient_force(plc::best_simd_target(), view, position.data(), n[0].data(),
-                               n[1].data(), n[2].data(), 1.0F, 1.0F, {1, 1, 1}, 0, count,
-                               f[0].data(), f[1].data(), f[2].data());
+  plc::kernels::gradient_force(plc::best_simd_target(), view, position.data(),
+                               {n[0].data(), n[1].data(), n[2].data()}, {1, 1, {1, 1, 1}}, 0, count,
+                               {f[0].data(), f[1].data(), f[2].data()});
   for (uint32_t i = 0; i < count; ++i) {
     const float outward = f[0][i] * n[0][i] + f[1][i] * n[1][i] + f[2][i] * n[2][i];
     const float slope = (1.0F / 6) / 0.5F;  // per voxel, in parts of the bound

@@ -32,11 +32,12 @@ std::vector<float> appendix_a(const std::vector<float>& in, const Dims& from,
   const auto p = static_cast<size_t>(from[2]);
   const auto m_to = static_cast<size_t>(to[0]), n_to = static_cast<size_t>(to[1]);
   std::vector<float> g(m_to * n * p), h(m_to * n_to * p), out(volume(to));
-  scalar::reduce_x(taps[0].view(), m_to, in.data(), m, m, n * p, g.data(), m_to, nullptr);
+  scalar::reduce_x(taps[0].view(), {in.data(), m, m}, n * p, {g.data(), m_to, m_to}, nullptr);
   for (size_t z = 0; z < p; ++z) {
-    scalar::reduce_y(taps[1].view(), 0, n_to,
-                     g.data() + (z * n + static_cast<size_t>(taps[1].first[0])) * m_to, m_to, m_to,
-                     h.data() + z * n_to * m_to, m_to);
+    scalar::reduce_y(
+        taps[1].view(), 0, n_to,
+        {g.data() + (z * n + static_cast<size_t>(taps[1].first[0])) * m_to, m_to, m_to},
+        {h.data() + z * n_to * m_to, m_to, m_to});
   }
   for (size_t k = 0; k < static_cast<size_t>(to[2]); ++k) {
     std::vector<const float*> planes;

@@ -140,8 +140,11 @@ TEST_CASE("one bit of one vertex is named by iteration, pass and stream", "[pass
   const auto position = [](Mesh& mesh) { flip_bit(mesh.position[40].y); };
   CHECK(samples::first_difference(sound, spoilt("laplacian 3", position)) ==
         "iteration 5, pass laplacian 3: position");
-  const auto slower = [](Mesh& mesh) { mesh.calm[40] ^= 1U; };
-  CHECK(samples::first_difference(sound, spoilt("calm", slower)) == "iteration 5, pass calm: calm");
+  const auto turned = [](Mesh& mesh) { mesh.turns[40] ^= 1U; };
+  CHECK(samples::first_difference(sound, spoilt("calm", turned)) ==
+        "iteration 5, pass calm: turns");
+  const auto woken = [](Mesh& mesh) { mesh.wake(40); };
+  CHECK(samples::first_difference(sound, spoilt("due", woken)) == "iteration 5, pass due: idle");
 }
 
 TEST_CASE("no pass writes what its row of the table does not say", "[pass_observer]") {

@@ -9,6 +9,7 @@
 #include "engine/start/mesh_import.h"
 #include "tests/samples/sample_surfaces.h"
 #include "tests/samples/sample_volumes.h"
+#include "tests/samples/sample_woken.h"
 
 namespace {
 
@@ -56,6 +57,7 @@ Violations violations(const Mesh& mesh) {
 // Conforms, and checks what is always so.
 OperationCounts conformed(Mesh& mesh, double delta) {
   OperationCounts counts;
+  const samples::Woken woken(mesh);
   REQUIRE(try_conform(mesh, delta, counts).message() == "");
   CHECK(plc::broken_invariant(mesh) == "");
   CHECK(samples::meeting_count(mesh) == 0);
@@ -66,7 +68,7 @@ OperationCounts conformed(Mesh& mesh, double delta) {
   CHECK(found.shorter == 0);
   CHECK(found.longer == 0);
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
-    if (mesh.idle[v] != Mesh::kAwake || mesh.cut_id[v] != 0 || mesh.velocity.x[v] != 0) {
+    if (!woken[v] || mesh.cut_id[v] != 0 || mesh.velocity.x[v] != 0) {
       FAIL("vertex " << v << " is not at rest and due");
     }
   }

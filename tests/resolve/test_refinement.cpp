@@ -9,6 +9,7 @@
 #include "tests/samples/kernel_fixtures.h"
 #include "tests/samples/sample_surfaces.h"
 #include "tests/samples/sample_volumes.h"
+#include "tests/samples/sample_woken.h"
 
 namespace {
 
@@ -36,6 +37,7 @@ TEST_CASE("refinement triples the faces and keeps topology, volume and embedding
     const int64_t euler = samples::euler(mesh);
     const size_t faces = mesh.faces().size();
     const double volume = samples::volume(mesh);
+    const samples::Woken woken(mesh);
     plc::refine(mesh, samples::kSerial);
     REQUIRE(plc::broken_invariant(mesh) == "");
     CHECK(mesh.faces().size() == 3 * faces);
@@ -45,7 +47,7 @@ TEST_CASE("refinement triples the faces and keeps topology, volume and embedding
     CHECK(samples::volume(mesh) < 1.5 * volume);
     CHECK(mesh.delta == Approx(1 / plc::kRefinement));
     CHECK(mesh.slots() == mesh.vertex_count());
-    for (uint32_t v = 0; v < mesh.slots(); ++v) CHECK(mesh.idle[v] == Mesh::kAwake);
+    for (uint32_t v = 0; v < mesh.slots(); ++v) CHECK(woken[v]);
   }
 }
 

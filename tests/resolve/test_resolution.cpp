@@ -44,7 +44,7 @@ struct Resolver {
  private:
   const plc::Vector<uint32_t>& search() {
     detection.update_hash();
-    detection.search({});
+    detection.search();
     return detection.due();
   }
 };
@@ -199,7 +199,7 @@ TEST_CASE("vertices are due when they have moved far, waited long or are awake",
   CHECK(resolver.search_due() == plc::Vector<uint32_t>{7, 90});
   CHECK(mesh.path[7] == 0);
   CHECK(mesh.path[8] > 0);
-  CHECK(mesh.idle[90] == 0);
+  CHECK(resolver.detection.idle()[90] == 0);
   CHECK(resolver.search_all().size() == mesh.slots());
   for (int i = 0; i < plc::kCheckPeriod; ++i) CHECK(resolver.search_due().empty());
   CHECK(resolver.search_due().size() == mesh.slots());

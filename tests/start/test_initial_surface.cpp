@@ -5,6 +5,7 @@
 
 #include "engine/base/constants.h"
 #include "tests/samples/sample_surfaces.h"
+#include "tests/samples/sample_woken.h"
 
 namespace {
 
@@ -38,6 +39,7 @@ TEST_CASE("a bubble is one closed sphere through the corners of the box", "[init
                             Extent{{-30, -4, 100}, {30, 4, 110}}}) {
     for (const double delta : {0.5, 0.83, 2.0}) {
       Mesh mesh;
+      const samples::Woken woken(mesh);
       REQUIRE(plc::make_bubble(mesh, box, delta, samples::kSerial).ok());
       REQUIRE(plc::broken_invariant(mesh) == "");
       CHECK(mesh.delta == delta);
@@ -57,7 +59,7 @@ TEST_CASE("a bubble is one closed sphere through the corners of the box", "[init
           sum += std::pow((p[a] - (box.high[a] + box.low[a]) / 2) / half, 4);
         }
         CHECK(sum == Approx(3).epsilon(1e-3));
-        CHECK(mesh.idle[v] == Mesh::kAwake);
+        CHECK(woken[v]);
       }
     }
   }

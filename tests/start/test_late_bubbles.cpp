@@ -9,6 +9,7 @@
 #include "tests/samples/sample_scenes.h"
 #include "tests/samples/sample_sides.h"
 #include "tests/samples/sample_surfaces.h"
+#include "tests/samples/sample_woken.h"
 
 namespace {
 
@@ -104,6 +105,7 @@ TEST_CASE("a missed part gets a surface of its own shape, faces outward, apart f
   const uint32_t old = mesh.slots();
   const double before = samples::volume(mesh);
   CHECK(wrong_voxels(mesh, scene) > 100);
+  const samples::Woken woken(mesh);
   const LateBubbles started = start(mesh, scene);
   CHECK(started.bubbles == 1);
   CHECK(started.cavities == 0);
@@ -116,7 +118,7 @@ TEST_CASE("a missed part gets a surface of its own shape, faces outward, apart f
   for (uint32_t v = old; v < mesh.slots(); ++v) {
     CHECK(plc::length(mesh.at(v) - Vec3{28, 12, 12}) == Approx(4).margin(0.9));
     CHECK(plc::length(mesh.velocity.at(v)) == 0);
-    CHECK(mesh.idle[v] == Mesh::kAwake);
+    CHECK(woken[v]);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/samples/sample_surfaces.h"
+#include "tests/samples/sample_woken.h"
 
 namespace {
 
@@ -56,6 +57,7 @@ TEST_CASE("closed surfaces arrive face by face", "[mesh_import]") {
                         cavity(true), pair, samples::bipyramid(40, 3)}) {
     Mesh mesh;
     mesh.delta = 0.75;
+    const samples::Woken woken(mesh);
     REQUIRE(import(m, mesh).message() == "");
     CHECK(plc::broken_invariant(mesh) == "");
     CHECK(mesh.slots() == m.vertex_count());
@@ -64,7 +66,7 @@ TEST_CASE("closed surfaces arrive face by face", "[mesh_import]") {
     for (uint32_t v = 0; v < mesh.slots(); ++v) {
       CHECK(mesh.at(v).x == static_cast<float>(m.xyz[3 * v]));
       CHECK(mesh.at(v).z == static_cast<float>(m.xyz[3 * v + 2]));
-      CHECK(mesh.idle[v] == Mesh::kAwake);
+      CHECK(woken[v]);
     }
   }
 }

@@ -112,7 +112,6 @@ TEST_CASE("the copies retreat towards their own side and remember the cut", "[an
   }
   for (const uint32_t v : cycle.corner) {
     mesh.velocity.set(v, {static_cast<float>(v), 0, 1});
-    mesh.operations[v] = static_cast<uint8_t>(v);
     mesh.turns[v] = static_cast<uint8_t>(0x40 + v);
   }
   const auto right = plc::cut_cycle(mesh, cycle, copies, 77, 12);
@@ -120,7 +119,6 @@ TEST_CASE("the copies retreat towards their own side and remember the cut", "[an
     const uint32_t v = cycle.corner[i];
     CHECK(right[i] == mesh.slots() - 3 + i);
     CHECK(mesh.velocity.at(right[i]).x == static_cast<float>(v));
-    CHECK(mesh.operations[right[i]] == v);
     CHECK(mesh.turns[v] == 0x40 + v + plc::kTransformationTurns);
     CHECK(mesh.turns[right[i]] == v + plc::kTransformationTurns);
     for (const uint32_t copy : {v, right[i]}) {

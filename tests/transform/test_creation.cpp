@@ -5,6 +5,7 @@
 #include "pyramid/memory.h"
 #include "tests/samples/sample_surfaces.h"
 #include "tests/samples/sample_volumes.h"
+#include "tests/samples/sample_woken.h"
 
 namespace {
 
@@ -45,12 +46,11 @@ TEST_CASE("the new vertex lies between the ends and the apexes, which alone chan
   const Edge e = plc::edge_at(mesh, u, 2);
   mesh.velocity.set(u, {2, 0, 4});
   mesh.velocity.set(e.v, {0, 6, 0});
-  mesh.operations[u] = 3;
-  mesh.operations[e.v] = 8;
   mesh.turns[u] = 0x80 + 4;
   mesh.turns[e.v] = 0x40 + 7;
   plc::Vector<uint32_t> valences;
   for (uint32_t v = 0; v < mesh.slots(); ++v) valences.push_back(mesh.valence(v));
+  const samples::Woken woken(mesh);
   const uint32_t w = plc::create_on_edge(mesh, e);
   CHECK(w == 66);
   CHECK(mesh.valence(w) == 4);
@@ -60,9 +60,8 @@ TEST_CASE("the new vertex lies between the ends and the apexes, which alone chan
   CHECK(mesh.velocity.at(w).x == 1);
   CHECK(mesh.velocity.at(w).y == 3);
   CHECK(mesh.velocity.at(w).z == 2);
-  CHECK(mesh.operations[w] == 8);
   CHECK(mesh.turns[w] == 6);
-  CHECK(mesh.idle[w] == Mesh::kAwake);
+  CHECK(woken[w]);
   for (uint32_t v = 0; v < w; ++v) {
     CHECK(mesh.valence(v) == valences[v] + (v == e.a || v == e.b ? 1U : 0U));
   }

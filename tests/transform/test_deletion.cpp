@@ -86,8 +86,6 @@ TEST_CASE("the merged vertex goes where it is told, with the mean velocity", "[d
   const Edge e = plc::edge_at(mesh, 30, 1);
   mesh.velocity.set(e.u, {1, 2, 3});
   mesh.velocity.set(e.v, {3, 2, 1});
-  mesh.operations[e.u] = 4;
-  mesh.operations[e.v] = 7;
   mesh.turns[e.u] = 0x80 + 4;
   mesh.turns[e.v] = 0x40 + 7;
   plc::delete_edge(mesh, e, {9, 8, 7});
@@ -95,7 +93,6 @@ TEST_CASE("the merged vertex goes where it is told, with the mean velocity", "[d
   CHECK(mesh.at(e.u).y == 8);
   CHECK(mesh.velocity.at(e.u).x == 2);
   CHECK(mesh.velocity.at(e.u).z == 2);
-  CHECK(mesh.operations[e.u] == 7);
   CHECK(mesh.turns[e.u] == 0x80 + 7);
   CHECK(mesh.create({}, {}) == e.v);
 }
