@@ -75,7 +75,8 @@ typedef enum plc_simd PLC_INT {
   PLC_SIMD_SCALAR = 1,
   PLC_SIMD_SSE4 = 2,
   PLC_SIMD_AVX2 = 3,
-  PLC_SIMD_AVX512 = 4
+  PLC_SIMD_AVX512 = 4,
+  PLC_SIMD_NEON = 5
 } plc_simd;
 
 typedef enum plc_voxel_type PLC_INT {

@@ -37,6 +37,8 @@ plc_simd api_target(SimdTarget target) {
       return PLC_SIMD_AVX2;
     case SimdTarget::kAvx512:
       return PLC_SIMD_AVX512;
+    case SimdTarget::kNeon:
+      return PLC_SIMD_NEON;
   }
   return PLC_SIMD_AUTO;
 }
