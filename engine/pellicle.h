@@ -46,7 +46,12 @@
  * they run with; 0.3 turned level_iso of plc_parameters round. */
 #define PLC_VERSION (PLC_VERSION_MAJOR * 1000000 + PLC_VERSION_MINOR * 1000 + PLC_VERSION_PATCH)
 
-#if defined(_WIN32)
+/* Windows: a host that links the static library defines PLC_STATIC. */
+#if defined(_WIN32) && defined(PLC_BUILDS_LIBRARY)
+#define PLC_API __declspec(dllexport)
+#elif defined(_WIN32) && !defined(PLC_STATIC)
+#define PLC_API __declspec(dllimport)
+#elif defined(_WIN32)
 #define PLC_API
 #else
 #define PLC_API __attribute__((visibility("default")))

@@ -6,7 +6,7 @@
 //
 //   Loops      Gather, never scatter: a task writes what belongs to its own vertices and reads what
 //              no task of the pass writes; marks that several tasks set to the same value are
-//              atomic (sleep.cpp). Tasks are fixed blocks (blocks.h, kGrain), whatever the
+//              atomic (marks.h). Tasks are fixed blocks (blocks.h, kGrain), whatever the
 //              number of threads. No task asks which thread it is on, how many there are, what time
 //              it is, or in which order tasks ended.
 //   Sums       Over a block in the order of lane_sum.h, over blocks from the first to the last.
