@@ -81,7 +81,8 @@ typedef enum plc_simd PLC_INT {
   PLC_SIMD_SSE4 = 2,
   PLC_SIMD_AVX2 = 3,
   PLC_SIMD_AVX512 = 4,
-  PLC_SIMD_NEON = 5
+  PLC_SIMD_NEON = 5,
+  PLC_SIMD_WASM = 6 /* WebAssembly's 128 bits */
 } plc_simd;
 
 typedef enum plc_voxel_type PLC_INT {

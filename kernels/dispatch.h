@@ -26,9 +26,12 @@ inline int64_t simd_target_mask(SimdTarget simd) {
       targets |= HWY_SSE4;
       break;
     case SimdTarget::kNeon:
+    case SimdTarget::kWasm:
     case SimdTarget::kScalar:
       break;
   }
+#elif HWY_ARCH_WASM
+  if (simd == SimdTarget::kWasm) targets = HWY_WASM;
 #else
   if (simd == SimdTarget::kNeon) targets = HWY_NEON;
 #endif

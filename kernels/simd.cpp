@@ -38,6 +38,8 @@ std::string_view simd_target_name(SimdTarget target) {
       return "avx512";
     case SimdTarget::kNeon:
       return "neon";
+    case SimdTarget::kWasm:
+      return "wasm";
   }
   return "unknown";
 }

@@ -17,7 +17,7 @@ namespace plc {
 
 namespace {
 
-constexpr size_t kHugePage = size_t{1} << 21U;
+[[maybe_unused]] constexpr size_t kHugePage = size_t{1} << 21U;
 
 // mimalloc as the system has it replaces malloc in every program that links it. A host's malloc is
 // its own affair: the library is loaded beside it, its names seen by nobody else.

@@ -34,6 +34,9 @@ bool target_of(plc_simd simd, plc::SimdTarget& target) {
     case PLC_SIMD_NEON:
       target = plc::SimdTarget::kNeon;
       return true;
+    case PLC_SIMD_WASM:
+      target = plc::SimdTarget::kWasm;
+      return true;
   }
   return false;
 }

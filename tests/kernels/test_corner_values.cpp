@@ -1,8 +1,8 @@
 // Values of which instruction sets have different opinions: the sign of zero, what is no number,
 // what fits no integer. Every target has those of the scalar twin, and they are written down here.
 #include <array>
-#include <bit>
 #include <catch2/catch.hpp>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -26,7 +26,9 @@ constexpr float kLargest = std::numeric_limits<float>::max();
 constexpr size_t kSide = 17;  // whole vectors of every target, and a rest
 
 uint32_t bits(float value) {
-  return std::bit_cast<uint32_t>(value);
+  uint32_t same;
+  std::memcpy(&same, &value, sizeof same);
+  return same;
 }
 
 // An image of one voxel value.

@@ -35,6 +35,10 @@ TEST_CASE("every instruction set of this processor was compiled", "[kernels]") {
 TEST_CASE("NEON is what an ARM processor computes with", "[kernels]") {
   REQUIRE(plc::best_simd_target() == SimdTarget::kNeon);
 }
+#elif defined(__wasm_simd128__)
+TEST_CASE("vectors of WebAssembly are computed with where they are compiled", "[kernels]") {
+  REQUIRE(plc::best_simd_target() == SimdTarget::kWasm);
+}
 #endif
 
 TEST_CASE("targets have the names that the command line uses", "[kernels]") {
@@ -43,4 +47,5 @@ TEST_CASE("targets have the names that the command line uses", "[kernels]") {
   REQUIRE(plc::simd_target_name(SimdTarget::kAvx2) == "avx2");
   REQUIRE(plc::simd_target_name(SimdTarget::kAvx512) == "avx512");
   REQUIRE(plc::simd_target_name(SimdTarget::kNeon) == "neon");
+  REQUIRE(plc::simd_target_name(SimdTarget::kWasm) == "wasm");
 }

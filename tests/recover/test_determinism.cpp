@@ -39,6 +39,8 @@ plc_simd api_target(SimdTarget target) {
       return PLC_SIMD_AVX512;
     case SimdTarget::kNeon:
       return PLC_SIMD_NEON;
+    case SimdTarget::kWasm:
+      return PLC_SIMD_WASM;
   }
   return PLC_SIMD_AUTO;
 }
