@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian packages that the named purposes need:
 #   tools/setup.sh [build] [test] [python] [demo] [lint] [compilers] [perf] [peers] [fuzz]
-#     [package] [coverage] [valgrind] [arm] [windows]
+#     [package] [coverage] [valgrind] [arm] [wasm] [windows]
 # Without a purpose: build and test, as cmake builds the tests, too, unless told otherwise.
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
@@ -21,6 +21,7 @@ package=(dpkg-dev file)
 coverage=(gcovr jq)
 valgrind=(valgrind)
 arm=(g++-aarch64-linux-gnu qemu-user-static libtbb-dev:arm64 libhwy-dev:arm64 libmimalloc2.0:arm64)
+wasm=(emscripten nodejs catch2)
 windows=(g++-mingw-w64-x86-64-posix)
 
 [ $# -gt 0 ] || set -- build test
@@ -40,10 +41,11 @@ for purpose in "$@"; do
     coverage) wanted+=("${coverage[@]}") ;;
     valgrind) wanted+=("${valgrind[@]}") ;;
     arm) wanted+=("${arm[@]}") ;;
+    wasm) wanted+=("${wasm[@]}") ;;
     windows) wanted+=("${windows[@]}") ;;
     *)
       echo "setup.sh: unknown purpose $purpose: build, test, python, demo, lint, compilers, perf," \
-        "peers, fuzz, package, coverage, valgrind, arm or windows" >&2
+        "peers, fuzz, package, coverage, valgrind, arm, wasm or windows" >&2
       exit 2
       ;;
   esac

@@ -17,7 +17,6 @@ target_include_directories(Catch2::Catch2 SYSTEM INTERFACE ${PROJECT_BINARY_DIR}
 set(Catch2_FOUND ON)
 add_library(Threads::Threads INTERFACE IMPORTED)
 
-# Exceptions of WebAssembly itself. Programs are tests, which node runs: all in one file.
+# Exceptions of WebAssembly itself. No relaxed SIMD: it rounds as the machine likes.
 add_compile_options(-msimd128 -fwasm-exceptions)
 add_link_options(-fwasm-exceptions -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB)
-add_link_options($<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-sSINGLE_FILE=1> -sEXIT_RUNTIME=1)
