@@ -46,7 +46,12 @@
  * they run with; 0.3 turned level_iso of plc_parameters round. */
 #define PLC_VERSION (PLC_VERSION_MAJOR * 1000000 + PLC_VERSION_MINOR * 1000 + PLC_VERSION_PATCH)
 
-#if defined(_WIN32)
+/* Windows: a host that links the static library defines PLC_STATIC. */
+#if defined(_WIN32) && defined(PLC_BUILDS_LIBRARY)
+#define PLC_API __declspec(dllexport)
+#elif defined(_WIN32) && !defined(PLC_STATIC)
+#define PLC_API __declspec(dllimport)
+#elif defined(_WIN32)
 #define PLC_API
 #else
 #define PLC_API __attribute__((visibility("default")))
@@ -75,7 +80,9 @@ typedef enum plc_simd PLC_INT {
   PLC_SIMD_SCALAR = 1,
   PLC_SIMD_SSE4 = 2,
   PLC_SIMD_AVX2 = 3,
-  PLC_SIMD_AVX512 = 4
+  PLC_SIMD_AVX512 = 4,
+  PLC_SIMD_NEON = 5,
+  PLC_SIMD_WASM = 6 /* WebAssembly's 128 bits */
 } plc_simd;
 
 typedef enum plc_voxel_type PLC_INT {
@@ -128,8 +135,8 @@ typedef struct plc_context_options {
   size_t struct_size;
   int threads;   /* 1 .. 1024: at most so many, and no more than oneTBB has for the process (one per
                     core, unless the host says otherwise); 1 starts none; 0: those of the caller's
-                    oneTBB arena. They stay awake between loops, up to 1 ms after the last.
-                    Ignored with parallel_for */
+                    oneTBB arena. 1 where the library has been built without oneTBB. They stay awake
+                    between loops, up to 1 ms after the last.   Ignored with parallel_for */
   plc_simd simd; /* must be available on this machine */
   plc_parallel_for_fn parallel_for; /* NULL: oneTBB */
   void* parallel_for_user;
@@ -155,7 +162,7 @@ PLC_API void plc_context_destroy(plc_context* context);
  * and for NULL. Valid until the next call on the context. */
 PLC_API const char* plc_context_message(const plc_context* context);
 /* The number of threads that loops may run on (0 with parallel_for: the host knows) and the SIMD
- * target in use ("scalar", "sse4", "avx2", "avx512"). 0 and "" for NULL. */
+ * target in use ("scalar", "sse4", "avx2", "avx512", "neon", "wasm"). 0 and "" for NULL. */
 PLC_API int plc_context_threads(const plc_context* context);
 PLC_API const char* plc_context_simd(const plc_context* context);
 /* Bytes that are allocated now, and the most there have been, by this context and what was made

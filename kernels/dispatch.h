@@ -24,24 +24,29 @@ inline int64_t simd_target_mask(SimdTarget simd) {
       [[fallthrough]];
     case SimdTarget::kSse4:
       targets |= HWY_SSE4;
-      [[fallthrough]];
+      break;
+    case SimdTarget::kNeon:
+    case SimdTarget::kWasm:
     case SimdTarget::kScalar:
       break;
   }
+#elif HWY_ARCH_WASM
+  if (simd == SimdTarget::kWasm) targets = HWY_WASM;
 #else
-  (void)simd;
+  if (simd == SimdTarget::kNeon) targets = HWY_NEON;
 #endif
   return targets;
 }
 
+inline constexpr bool kOneTarget = (HWY_TARGETS & (HWY_TARGETS - 1)) == 0;
+
 // Index of `simd` in the tables of HWY_EXPORT. The choice is local: Highway's own, which is a
 // global of the process, is left alone. Looked up: some kernels take less time than finding it.
 inline size_t dispatch_index(SimdTarget simd) {
-  if constexpr ((HWY_TARGETS & (HWY_TARGETS - 1)) == 0) return 0;
+  if constexpr (kOneTarget) return 0;
   static const auto indices = [] {
-    std::array<size_t, 4> index{};
-    for (const SimdTarget target :
-         {SimdTarget::kScalar, SimdTarget::kSse4, SimdTarget::kAvx2, SimdTarget::kAvx512}) {
+    std::array<size_t, kSimdTargets.size()> index{};
+    for (const SimdTarget target : kSimdTargets) {
       hwy::ChosenTarget chosen;
       chosen.Update(simd_target_mask(target));
       index[static_cast<size_t>(target)] = chosen.GetIndex();

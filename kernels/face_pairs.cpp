@@ -1,5 +1,7 @@
 #include "kernels/face_pairs.h"
 
+#include <bit>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/face_pairs.cpp"
 #include "hwy/foreach_target.h"
@@ -79,7 +81,7 @@ class LeafCorners {
 };
 
 HWY_INLINE uint32_t lowest_bit(uint32_t bits) {
-  return static_cast<uint32_t>(__builtin_ctz(bits));
+  return static_cast<uint32_t>(std::countr_zero(bits));
 }
 
 // Of `leaf` with a later leaf, or itself, whose box is other_box.

@@ -123,9 +123,7 @@ class MoveLanes {
     hn::StoreU(hn::Add(hn::LoadU(d, s.path + i), hn::Sqrt(squared)), d, s.path + i);
     longest_ = hn::IfThenElse(hn::Gt(squared, longest_), squared, longest_);
     const Floats along = dot(by, load3(s.normal, i));
-    const Doubles low = low_doubles(along);
-    const Doubles high = high_doubles(along);
-    energy_.add(part, hn::Mul(low, low), hn::Mul(high, high));
+    energy_.add(part, square_of(low_doubles(along)), square_of(high_doubles(along)));
   }
   HWY_INLINE Movement total() const { return {energy_.total(), greatest(longest_)}; }
 

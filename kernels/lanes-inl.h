@@ -13,6 +13,36 @@
 HWY_BEFORE_NAMESPACE();
 namespace plc::kernels::HWY_NAMESPACE {
 
+#if HWY_TARGET == HWY_WASM  // Highway has no vectors of doubles there before its version 1.0.4
+struct Doubles {
+  double lane[2];
+};
+inline constexpr uint32_t kDoubleLanes = 2;
+
+HWY_INLINE Doubles low_doubles(Floats a) {
+  alignas(16) float lane[4];
+  hn::Store(a, FloatTag(), lane);
+  return {{lane[0], lane[1]}};
+}
+HWY_INLINE Doubles high_doubles(Floats a) {
+  alignas(16) float lane[4];
+  hn::Store(a, FloatTag(), lane);
+  return {{lane[2], lane[3]}};
+}
+HWY_INLINE Doubles zero_doubles() {
+  return {{0, 0}};
+}
+HWY_INLINE Doubles sum_of(const Doubles& a, const Doubles& b) {
+  return {{a.lane[0] + b.lane[0], a.lane[1] + b.lane[1]}};
+}
+HWY_INLINE Doubles square_of(const Doubles& a) {
+  return {{a.lane[0] * a.lane[0], a.lane[1] * a.lane[1]}};
+}
+HWY_INLINE void store(const Doubles& a, double* to) {
+  to[0] = a.lane[0];
+  to[1] = a.lane[1];
+}
+#else
 using DoubleTag = hn::ScalableTag<double>;
 using Doubles = hn::Vec<DoubleTag>;
 inline constexpr uint32_t kDoubleLanes = static_cast<uint32_t>(hn::MaxLanes(DoubleTag()));
@@ -23,25 +53,35 @@ HWY_INLINE Doubles low_doubles(Floats a) {
 HWY_INLINE Doubles high_doubles(Floats a) {
   return hn::PromoteTo(DoubleTag(), hn::UpperHalf(hn::Half<FloatTag>(), a));
 }
+HWY_INLINE Doubles zero_doubles() {
+  return hn::Zero(DoubleTag());
+}
+HWY_INLINE Doubles sum_of(Doubles a, Doubles b) {
+  return hn::Add(a, b);
+}
+HWY_INLINE Doubles square_of(Doubles a) {
+  return hn::Mul(a, a);
+}
+HWY_INLINE void store(Doubles a, double* to) {
+  hn::Store(a, DoubleTag(), to);
+}
+#endif
 
 // Accumulator l is lane l % kDoubleLanes of sum[l / kDoubleLanes].
 struct LaneSums {
   Doubles sum[kRingLanes / kDoubleLanes];
 
   HWY_INLINE LaneSums() {
-    for (Doubles& s : sum) s = hn::Zero(DoubleTag());
+    for (Doubles& s : sum) s = zero_doubles();
   }
   // Adds vertices kLanes * part .. of a block.
   HWY_INLINE void add(uint32_t part, Doubles low, Doubles high) {
-    sum[2 * part] = hn::Add(sum[2 * part], low);
-    sum[2 * part + 1] = hn::Add(sum[2 * part + 1], high);
+    sum[2 * part] = sum_of(sum[2 * part], low);
+    sum[2 * part + 1] = sum_of(sum[2 * part + 1], high);
   }
   HWY_INLINE double total() const {
-    const DoubleTag d;
     alignas(64) double lane[kRingLanes];
-    for (uint32_t i = 0; i < kRingLanes / kDoubleLanes; ++i) {
-      hn::Store(sum[i], d, lane + i * kDoubleLanes);
-    }
+    for (uint32_t i = 0; i < kRingLanes / kDoubleLanes; ++i) store(sum[i], lane + i * kDoubleLanes);
     return add_lanes(lane);
   }
 };

@@ -1,5 +1,6 @@
 #include "kernels/nearby.h"
 
+#include <bit>
 #include <cstring>
 
 #undef HWY_TARGET_INCLUDE
@@ -48,7 +49,7 @@ uint32_t near_or_turned(const NearbyView& view, const NearbyQuery& q, uint32_t* 
     }
     if (end - begin < 64) bits &= (uint64_t{1} << (end - begin)) - 1;  // not the padding
     for (; bits != 0; bits &= bits - 1) {
-      hits[count++] = begin + static_cast<uint32_t>(__builtin_ctzll(bits));
+      hits[count++] = begin + static_cast<uint32_t>(std::countr_zero(bits));
     }
   }
   return count;

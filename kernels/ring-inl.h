@@ -7,6 +7,7 @@
 #endif
 
 #include "hwy/cache_control.h"
+#include "kernels/prefetch.h"
 #include "kernels/scalar.h"
 #include "kernels/vectors-inl.h"
 
@@ -29,7 +30,7 @@ HWY_INLINE const uint32_t* columns_of(const RingView& ring, uint32_t v) {
 // has more misses under way than the first; a task fetches for the next one (Blocks::following).
 inline constexpr size_t kAhead = 96;
 HWY_INLINE void prefetch(const void* p) {
-  __builtin_prefetch(p, 0, 2);
+  prefetch_far(p);
 }
 // The slots that most rings have.
 HWY_INLINE void prefetch_ring(const RingView& ring, uint32_t begin) {

@@ -150,7 +150,7 @@ void normals(const RingView& ring, const Float4* position, const Blocks& blocks,
 // With a constructor: as an aggregate GCC 12 clears all of it first.
 struct NormalAndDifferenceSum : NormalSum {
   Floats3 differences = zero3();
-  HWY_INLINE explicit NormalAndDifferenceSum(const Floats3& centre) : NormalSum{centre} {}
+  HWY_INLINE explicit NormalAndDifferenceSum(const Floats3& vertex) : NormalSum{vertex} {}
   HWY_INLINE void add(FloatMask has_slot, const Floats3& neighbour) {
     differences = differences + (neighbour - centre);  // +0 past the valence
     NormalSum::add(has_slot, neighbour);

@@ -20,6 +20,10 @@ using scalar::normalize_voxels;
 using scalar::voxel_extent;
 #else
 
+#if HWY_TARGET == HWY_WASM  // Highway has no vectors of doubles there before its version 1.0.4
+using scalar::normalize_voxels;
+#else
+
 // As many voxels as a vector holds doubles.
 using DoubleTag = hn::ScalableTag<double>;
 using Doubles = hn::Vec<DoubleTag>;
@@ -67,6 +71,7 @@ void normalize_voxels(VoxelType type, const void* voxels, size_t count, double l
       return normalize(type, static_cast<const float*>(voxels), count, low, scale, values);
   }
 }
+#endif
 
 // Lane extremes of whole vectors, then the rest by the scalar twin.
 template <typename T>

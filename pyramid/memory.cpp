@@ -1,6 +1,10 @@
 #include "pyramid/memory.h"
 
+#if defined(_WIN32)
+#include <malloc.h>
+#elif !defined(__EMSCRIPTEN__)
 #include <dlfcn.h>
+#endif
 #if defined(__linux__)
 #include <sys/mman.h>
 #endif
@@ -13,11 +17,15 @@ namespace plc {
 
 namespace {
 
-constexpr size_t kHugePage = size_t{1} << 21U;
+[[maybe_unused]] constexpr size_t kHugePage = size_t{1} << 21U;
 
 // mimalloc as the system has it replaces malloc in every program that links it. A host's malloc is
 // its own affair: the library is loaded beside it, its names seen by nobody else.
 struct SystemAllocator {
+#if defined(_WIN32)
+  void* (*allocate)(size_t size, size_t alignment) = _aligned_malloc;
+  void (*release)(void* data) = _aligned_free;
+#else
   void* (*allocate)(size_t size, size_t alignment) = nullptr;
   void (*release)(void* data) = std::free;
 
@@ -26,6 +34,12 @@ struct SystemAllocator {
       void* data = nullptr;
       return posix_memalign(&data, alignment, size) == 0 ? data : nullptr;
     };
+    load_mimalloc();
+  }
+
+ private:
+  void load_mimalloc() {
+#if !defined(__EMSCRIPTEN__)
     if (PLC_SANITIZED_MEMORY != 0) return;
     void* library = dlopen("libmimalloc.so.2", RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) return;
@@ -34,7 +48,9 @@ struct SystemAllocator {
     if (aligned == nullptr || free == nullptr) return;
     allocate = reinterpret_cast<void* (*)(size_t, size_t)>(aligned);
     release = reinterpret_cast<void (*)(void*)>(free);
+#endif
   }
+#endif
 };
 
 const SystemAllocator& system_allocator() {

@@ -1,8 +1,9 @@
 // The main() of every test program.
 #define CATCH_CONFIG_MAIN
-#include <oneapi/tbb/global_control.h>
-
 #include <catch2/catch.hpp>
+
+#if PELLICLE_TBB
+#include <oneapi/tbb/global_control.h>
 
 namespace {
 
@@ -11,3 +12,4 @@ const oneapi::tbb::global_control kThreads(oneapi::tbb::global_control::max_allo
                                            16);
 
 }  // namespace
+#endif

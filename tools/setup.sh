@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian packages that the named purposes need:
 #   tools/setup.sh [build] [test] [python] [demo] [lint] [compilers] [perf] [peers] [fuzz]
-#     [package] [coverage] [valgrind]
+#     [package] [coverage] [valgrind] [arm] [wasm] [windows]
 # Without a purpose: build and test, as cmake builds the tests, too, unless told otherwise.
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
@@ -20,6 +20,9 @@ peers=(libvtk9-dev libcgal-dev)  # programs that perf/run compares with
 package=(dpkg-dev file)
 coverage=(gcovr jq)
 valgrind=(valgrind)
+arm=(g++-aarch64-linux-gnu qemu-user-static libtbb-dev:arm64 libhwy-dev:arm64 libmimalloc2.0:arm64)
+wasm=(emscripten nodejs catch2)
+windows=(g++-mingw-w64-x86-64-posix)
 
 [ $# -gt 0 ] || set -- build test
 wanted=()
@@ -37,9 +40,12 @@ for purpose in "$@"; do
     package) wanted+=("${package[@]}") ;;
     coverage) wanted+=("${coverage[@]}") ;;
     valgrind) wanted+=("${valgrind[@]}") ;;
+    arm) wanted+=("${arm[@]}") ;;
+    wasm) wanted+=("${wasm[@]}") ;;
+    windows) wanted+=("${windows[@]}") ;;
     *)
       echo "setup.sh: unknown purpose $purpose: build, test, python, demo, lint, compilers, perf," \
-        "peers, fuzz, package, coverage or valgrind" >&2
+        "peers, fuzz, package, coverage, valgrind, arm, wasm or windows" >&2
       exit 2
       ;;
   esac
@@ -62,5 +68,6 @@ if [ "$(id -u)" -ne 0 ]; then
 fi
 echo "Installing ${missing[*]}"
 apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y)
+if [[ " ${missing[*]} " == *:arm64\ * ]]; then "${as_root[@]}" dpkg --add-architecture arm64; fi
 "${apt[@]}" update </dev/null
 "${apt[@]}" install --no-install-recommends "${missing[@]}" </dev/null

@@ -31,6 +31,12 @@ bool target_of(plc_simd simd, plc::SimdTarget& target) {
     case PLC_SIMD_AVX512:
       target = plc::SimdTarget::kAvx512;
       return true;
+    case PLC_SIMD_NEON:
+      target = plc::SimdTarget::kNeon;
+      return true;
+    case PLC_SIMD_WASM:
+      target = plc::SimdTarget::kWasm;
+      return true;
   }
   return false;
 }

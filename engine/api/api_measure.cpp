@@ -56,7 +56,8 @@ plc_status plc_mesh_component_measures(plc_context* context, const double* xyz,
                             static_cast<size_t>(face_count), context->host->schedule);
     if (whole != nullptr) plc::give_struct(record_of(shape.whole), whole);
     *count = static_cast<int64_t>(shape.components.size());
-    std::transform(shape.components.begin(), shape.components.begin() + std::min(capacity, *count),
+    std::transform(shape.components.data(),
+                   shape.components.data() + static_cast<size_t>(std::min(capacity, *count)),
                    components, record_of);
     return {};
   });

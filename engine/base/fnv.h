@@ -1,10 +1,10 @@
 // 64-bit FNV-1a: what recorded results are compared by. Not a library's hash: it is a line of code,
 // must be the same for ever, and is not where the time goes.
 #pragma once
-#include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 namespace plc {
 
@@ -17,8 +17,8 @@ class Fnv {
       hash_ = (hash_ ^ (value >> (8 * i) & 0xFFU)) * 0x100000001B3ULL;
     }
   }
-  void add(float value) { add(std::bit_cast<uint32_t>(value)); }
-  void add(double value) { add(std::bit_cast<uint64_t>(value)); }
+  void add(float value) { add(bits<uint32_t>(value)); }
+  void add(double value) { add(bits<uint64_t>(value)); }
   // Every value of a range, from the first to the last.
   template <typename Range>
   void add_all(const Range& values) {
@@ -27,6 +27,15 @@ class Fnv {
   uint64_t value() const { return hash_; }
 
  private:
+  // std::bit_cast, which older libraries of Clang have not.
+  template <typename Bits, typename Value>
+  static Bits bits(Value value) {
+    Bits same;
+    static_assert(sizeof same == sizeof value);
+    std::memcpy(&same, &value, sizeof same);
+    return same;
+  }
+
   uint64_t hash_ = 0xCBF29CE484222325ULL;
 };
 

@@ -1,12 +1,12 @@
 // Threads: parallel loops and the task graph of a step, on those of oneTBB (tbb_arena.h) or a host.
 //
 // The determinism contract: the same input and parameters give the same bits for any number of
-// threads, on any SIMD target, by GCC and Clang, run after run. It holds by construction, as long
-// as everything that changes the surface keeps to this:
+// threads, on any SIMD target and processor, by GCC and Clang, run after run. It holds by
+// construction, as long as everything that changes the surface keeps to this:
 //
 //   Loops      Gather, never scatter: a task writes what belongs to its own vertices and reads what
 //              no task of the pass writes; marks that several tasks set to the same value are
-//              atomic (sleep.cpp). Tasks are fixed blocks (blocks.h, kGrain), whatever the
+//              atomic (marks.h). Tasks are fixed blocks (blocks.h, kGrain), whatever the
 //              number of threads. No task asks which thread it is on, how many there are, what time
 //              it is, or in which order tasks ended.
 //   Sums       Over a block in the order of lane_sum.h, over blocks from the first to the last.
@@ -33,8 +33,8 @@
 // pass: the first that differs is named, "iteration 17, pass stage 2: velocity" (pass_observer.h,
 // tests/samples/sample_traces.h); tests/tools/test_ct_determinism.sh extracts a head CT;
 // tests/tools/test_c_library.sh names the file that calls what is not exact; tools/compilers runs
-// the recorded hashes with Clang. A change that changes results on purpose records them anew, and
-// says so.
+// the recorded hashes with other compilers and on other processors. A change that changes results
+// on purpose records them anew, and says so.
 #pragma once
 #include <cstdint>
 #include <functional>

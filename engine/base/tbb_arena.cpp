@@ -1,5 +1,31 @@
 #include "engine/base/tbb_arena.h"
 
+#if !PELLICLE_TBB  // an option of CMake
+
+// One thread, unless the host lends its own.
+namespace plc {
+
+struct TbbArena::Own {};
+
+TbbArena::TbbArena(int) {}
+TbbArena::~TbbArena() = default;
+
+void TbbArena::run(size_t tasks, Task task, void* data) {
+  for (size_t i = 0; i < tasks; ++i) task(i, data);
+}
+void TbbArena::enqueue(Task, void*) {}
+
+int TbbArena::threads_of_process() {
+  return 1;
+}
+int TbbArena::threads_of_caller() {
+  return 1;
+}
+
+}  // namespace plc
+
+#else
+
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -54,3 +80,5 @@ int TbbArena::threads_of_caller() {
 }
 
 }  // namespace plc
+
+#endif

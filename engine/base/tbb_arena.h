@@ -1,4 +1,4 @@
-// Threads of oneTBB: the only file pair that calls it.
+// Threads of oneTBB: the only file pair that calls it, and does without it where there is none.
 //
 // For ThreadSanitizer it belongs to oneTBB, whose templates it holds: neither is instrumented, as
 // the library that the system has is not. Whoever hands tasks over tells what happens before what

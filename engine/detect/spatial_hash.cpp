@@ -7,6 +7,7 @@
 #include "engine/base/blocks.h"
 #include "engine/base/constants.h"
 #include "engine/base/four.h"
+#include "kernels/prefetch.h"
 #include "pyramid/memory.h"
 
 namespace plc {
@@ -140,7 +141,7 @@ void SpatialHash::collect(const Mesh& mesh, Vec3 low, Vec3 high, Collected& out)
   out.runs.clear();
   visit_rows(reached, [&](uint32_t first, uint32_t run) {
     visit_runs(first, run, [&](uint32_t b, uint32_t last) {
-      __builtin_prefetch(&start_[b]);
+      prefetch_near(&start_[b]);
       out.runs.push_back({b, last});
     });
   });
@@ -148,8 +149,8 @@ void SpatialHash::collect(const Mesh& mesh, Vec3 low, Vec3 high, Collected& out)
   out.entries.clear();
   for (const Run& r : out.runs) {
     const kernels::EntryRun run{start_[r.first], start_[r.last + 1]};
-    __builtin_prefetch(&entries_[run.first]);
-    __builtin_prefetch(&places_[run.first]);
+    prefetch_near(&entries_[run.first]);
+    prefetch_near(&places_[run.first]);
     count += run.last - run.first;
     out.entries.push_back(run);
   }
@@ -166,7 +167,7 @@ void SpatialHash::collect(const Mesh& mesh, Vec3 low, Vec3 high, Collected& out)
   const Float4* const position = mesh.position.data();
   const uint32_t* const found = out.found.data();
   const uint32_t* const end = found + out.found.size();
-  for (const uint32_t* f = found; f != end; ++f) __builtin_prefetch(position + *f);
+  for (const uint32_t* f = found; f != end; ++f) prefetch_near(position + *f);
   const Four from{low.x, low.y, low.z, 0}, to{high.x, high.y, high.z, 0};
   out.ids.resize_uninitialized(out.found.size());
   uint32_t* within = out.ids.data();

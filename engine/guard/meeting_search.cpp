@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <limits>
 
@@ -22,7 +23,7 @@ constexpr size_t kSearchBlock = 4;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 uint32_t lowest_bit(uint32_t mask) {
-  return static_cast<uint32_t>(__builtin_ctz(mask));
+  return static_cast<uint32_t>(std::countr_zero(mask));
 }
 
 // visit(index) of the bytes that are not 0, ascending. They are few, so eight are looked at at

@@ -1,6 +1,7 @@
 #include "engine/guard/trials.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "engine/base/blocks.h"
@@ -86,9 +87,9 @@ bool Trials::find_overlapping(const Box3& box) {
   bool found = false;
   for (size_t i = 0; i < boxes_.size(); ++i) {
     for (uint32_t hits = boxes_[i].overlapping(box); hits != 0; hits &= hits - 1) {
-      const size_t operation = i * BoxLanes::kLanes + static_cast<uint32_t>(__builtin_ctz(hits));
-      around_.insert(around_.end(), centres_.begin() + first_centre_[operation],
-                     centres_.begin() + first_centre_[operation + 1]);
+      const size_t operation = i * BoxLanes::kLanes + static_cast<uint32_t>(std::countr_zero(hits));
+      around_.insert(around_.end(), centres_.data() + first_centre_[operation],
+                     centres_.data() + first_centre_[operation + 1]);
       found = true;
     }
   }

@@ -1,13 +1,14 @@
 #include "engine/motion/sleep.h"
 
 #include <algorithm>
-#include <atomic>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstring>
 
 #include "engine/base/blocks.h"
 #include "engine/base/constants.h"
+#include "engine/base/marks.h"
 #include "engine/mesh/turns.h"
 
 namespace plc {
@@ -112,8 +113,7 @@ void Sleep::find_rim() {
     // Several tasks may write the same 1. Only where there is none yet: each write takes the cache
     // line from the other threads.
     const auto touch = [&](uint32_t block) {
-      const std::atomic_ref<uint8_t> touched(touched_[block]);
-      if (touched.load(std::memory_order_relaxed) == 0) touched.store(1, std::memory_order_relaxed);
+      if (read_mark(touched_[block]) == 0) set_mark(touched_[block], 1);
     };
     for (size_t i = begin; i < end; ++i) {
       touch(awake_[i]);
@@ -155,7 +155,7 @@ void Sleep::observe() {
       const uint32_t first = awake_[i] * kRingLanes;
       uint32_t waking = observe_block(mesh_, &calm_[first], &drift_[first], first, limits);
       for (; waking != 0; waking &= waking - 1) {
-        wakers.push_back(first + static_cast<uint32_t>(__builtin_ctz(waking)));
+        wakers.push_back(first + static_cast<uint32_t>(std::countr_zero(waking)));
       }
     }
   });
@@ -164,7 +164,7 @@ void Sleep::observe() {
     for (const uint32_t v : found_[task]) {
       const uint32_t d = mesh_.valence(v);
       for (uint32_t k = 0; k < d; ++k) {
-        std::atomic_ref<uint8_t>(calm_[mesh_.neighbor(v, k)]).store(0, std::memory_order_relaxed);
+          set_mark(calm_[mesh_.neighbor(v, k)], 0);
       }
     }
   });

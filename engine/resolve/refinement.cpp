@@ -46,7 +46,9 @@ struct Keyed {
 void sort_by_key(Vector<Keyed>& keyed) {
   constexpr uint32_t kDigit = 11, kDigits = 6;
   constexpr size_t kValues = size_t{1} << kDigit;
-  const auto digit = [](uint64_t key, uint32_t d) { return key >> (kDigit * d) & (kValues - 1); };
+  const auto digit = [](uint64_t key, uint32_t d) {
+    return static_cast<size_t>(key >> (kDigit * d) & (kValues - 1));
+  };
   Vector<std::array<uint32_t, kValues>> count(kDigits);
   for (const Keyed& k : keyed) {
     for (uint32_t d = 0; d < kDigits; ++d) ++count[d][digit(k.key, d)];

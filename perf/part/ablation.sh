@@ -4,7 +4,7 @@ without() { "$build/perf/bench_ablation" "$head_ct" "$1" >"$report"; }
 declare -A other=()  # variants with results of their own
 all=("${bone[@]}" --levels 3 --no-late-bubbles)
 variant whole extract "$head_ct" "${all[@]}"
-for target in scalar sse4 avx2 avx512; do
+for target in scalar sse4 avx2 avx512 neon; do
   if "$pellicle" extract "$head_ct" -o "$dir/probe.ply" "${all[@]}" --simd "$target" --quiet \
     --max-iterations 1 >/dev/null 2>"$dir/probe.log" || ! grep -q simd "$dir/probe.log"; then
     variant "$target" extract "$head_ct" "${all[@]}" --simd "$target"

@@ -115,8 +115,8 @@ TEST_CASE("a context that cannot be made is NULL and says why", "[pellicle]") {
 }
 
 TEST_CASE("targets that the machine lacks are refused by name", "[pellicle]") {
-  const char* const kNames[] = {"scalar", "sse4", "avx2", "avx512"};
-  for (int target = PLC_SIMD_SCALAR; target <= PLC_SIMD_AVX512; ++target) {
+  const char* const kNames[] = {"scalar", "sse4", "avx2", "avx512", "neon", "wasm"};
+  for (int target = PLC_SIMD_SCALAR; target <= PLC_SIMD_WASM; ++target) {
     plc_context_options options;
     plc_context_options_defaults(&options);
     options.simd = static_cast<plc_simd>(target);

@@ -130,12 +130,10 @@ void choose_second(Case& c) {
   constexpr int kThreads[] = {1, 2, 2, 3, 3, 8};
   way.threads = random.one_of(kThreads);
   // The best that the machine has of what was drawn.
-  constexpr plc_simd kTargets[] = {PLC_SIMD_SCALAR, PLC_SIMD_SSE4, PLC_SIMD_AVX2, PLC_SIMD_AVX512};
-  int target = random.one_of(kTargets);
-  while (!plc::simd_target_available(static_cast<plc::SimdTarget>(target - PLC_SIMD_SCALAR))) {
-    --target;
-  }
-  way.simd = static_cast<plc_simd>(target);
+  constexpr size_t kTargets[] = {0, 1, 2, 3};
+  const std::vector<plc::SimdTarget> targets = plc::available_simd_targets();
+  const size_t target = std::min(random.one_of(kTargets), targets.size() - 1);
+  way.simd = static_cast<plc_simd>(PLC_SIMD_SCALAR + static_cast<int>(targets[target]));
   c.work = once_in(random, 60) ? 500000 : 15000;
   way.own_memory = once_in(random, 4);
   way.backwards = once_in(random, 6);

@@ -14,8 +14,7 @@ TEST_CASE("the scalar target is always there and the best target is the last one
 
 TEST_CASE("the available targets are the ones that are said to be available", "[kernels]") {
   const std::vector<SimdTarget> targets = plc::available_simd_targets();
-  for (const SimdTarget target :
-       {SimdTarget::kScalar, SimdTarget::kSse4, SimdTarget::kAvx2, SimdTarget::kAvx512}) {
+  for (const SimdTarget target : plc::kSimdTargets) {
     const bool listed = std::find(targets.begin(), targets.end(), target) != targets.end();
     REQUIRE(plc::simd_target_available(target) == listed);
   }
@@ -32,6 +31,14 @@ TEST_CASE("every instruction set of this processor was compiled", "[kernels]") {
   REQUIRE(plc::simd_target_available(SimdTarget::kAvx2) == avx2);
   REQUIRE(plc::simd_target_available(SimdTarget::kAvx512) == avx512);
 }
+#elif defined(__aarch64__)
+TEST_CASE("NEON is what an ARM processor computes with", "[kernels]") {
+  REQUIRE(plc::best_simd_target() == SimdTarget::kNeon);
+}
+#elif defined(__wasm_simd128__)
+TEST_CASE("vectors of WebAssembly are computed with where they are compiled", "[kernels]") {
+  REQUIRE(plc::best_simd_target() == SimdTarget::kWasm);
+}
 #endif
 
 TEST_CASE("targets have the names that the command line uses", "[kernels]") {
@@ -39,4 +46,6 @@ TEST_CASE("targets have the names that the command line uses", "[kernels]") {
   REQUIRE(plc::simd_target_name(SimdTarget::kSse4) == "sse4");
   REQUIRE(plc::simd_target_name(SimdTarget::kAvx2) == "avx2");
   REQUIRE(plc::simd_target_name(SimdTarget::kAvx512) == "avx512");
+  REQUIRE(plc::simd_target_name(SimdTarget::kNeon) == "neon");
+  REQUIRE(plc::simd_target_name(SimdTarget::kWasm) == "wasm");
 }

@@ -36,7 +36,9 @@ double ulp(double y) {
 }  // namespace
 
 TEST_CASE("e^x is the nearest double, but for a thousandth of a step", "[exponential]") {
-  if (std::numeric_limits<long double>::digits < 64) return;  // nothing better to compare with
+  // Nothing better to compare with: a library may compute more digits no better.
+  if (std::numeric_limits<long double>::digits < 64) return;
+  if (std::exp(1.5L) == static_cast<long double>(std::exp(1.5))) return;
   double worst = 0;
   for (const double x : arguments(200000)) {
     const double got = exponential(x);

@@ -37,6 +37,10 @@ plc_simd api_target(SimdTarget target) {
       return PLC_SIMD_AVX2;
     case SimdTarget::kAvx512:
       return PLC_SIMD_AVX512;
+    case SimdTarget::kNeon:
+      return PLC_SIMD_NEON;
+    case SimdTarget::kWasm:
+      return PLC_SIMD_WASM;
   }
   return PLC_SIMD_AUTO;
 }

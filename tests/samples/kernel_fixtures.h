@@ -1,9 +1,9 @@
 // Inputs for the tests of kernels/ and pyramid/: random rings, bitwise comparison, threads.
 #pragma once
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <random>
 #include <thread>
 #include <vector>
@@ -21,7 +21,7 @@ inline int64_t first_difference(const std::vector<float>& a, const std::vector<f
   if (a.size() != b.size()) return 0;
   for (size_t i = 0; i < a.size(); ++i) {
     if (std::isnan(a[i]) && std::isnan(b[i])) continue;
-    if (std::bit_cast<uint32_t>(a[i]) != std::bit_cast<uint32_t>(b[i])) {
+    if (std::memcmp(&a[i], &b[i], sizeof a[i]) != 0) {
       return static_cast<int64_t>(i);
     }
   }

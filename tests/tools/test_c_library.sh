@@ -3,10 +3,12 @@
 # function whose result is not exact or rounded correctly, and the C library's own choice, made by
 # what the processor can do, changes nothing.
 #   tests/tools/test_c_library.sh PELLICLE ARCHIVE...   exit code 77 where there is no glibc and no nm
+# PELLICLE is - where the archives are another machine's, for which CXX then compiles.
 set -uo pipefail
 library=$(${CXX:-c++} -print-file-name=libm.so.6)
 if ! [ -e "$library" ] || ! command -v nm >/dev/null; then echo "skipped: no glibc, or no nm"; exit 77; fi
-pellicle=$(realpath "$1")
+pellicle=$1
+if [ "$pellicle" != - ]; then pellicle=$(realpath "$pellicle"); fi
 shift
 failures=0
 
@@ -29,7 +31,7 @@ for archive in "$@"; do archives+=("$(realpath "$archive")"); done
 cd "$here" || exit 1
 
 calls "${archives[@]}" >called
-grep -q '^gaussian ' called || { echo "FAILED: nm does not tell what gaussian.cpp calls"; failures=1; }
+grep -q "^exponential ldexp" called || { echo "FAILED: nm does not tell what exponential.cpp calls"; failures=1; }
 while read -r object function; do
   case $function in fe[a-z]*) continue ;; esac
   case $exact in *[[:space:]]${function%f}[[:space:]]* | *[[:space:]]"$function"[[:space:]]*) continue ;; esac
@@ -37,6 +39,11 @@ while read -r object function; do
   echo "FAILED: $object.cpp calls $function, whose last bits differ between C libraries"
   failures=$((failures + 1))
 done <called
+
+if [ "$pellicle" = - ]; then
+  if [ "$failures" -eq 0 ]; then echo "every mathematical function that is called is exact"; fi
+  exit $((failures > 0))
+fi
 
 # hash NAME [VARIABLE=VALUE]: of the surface.
 hash() {

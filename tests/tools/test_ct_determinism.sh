@@ -33,7 +33,7 @@ run() {  # threads, simd
   fi
 }
 
-for simd in scalar sse4 avx2 avx512; do run 2 $simd; done
+for simd in scalar sse4 avx2 avx512 neon; do run 2 $simd; done
 for threads in 1 3 8; do run $threads auto; done
 run 8 scalar
 run 2 auto

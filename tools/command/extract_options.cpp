@@ -23,11 +23,9 @@ const Choices<int> kInsides = {{"above", 0}, {"below", 1}};
 
 namespace {
 
-const Choices<plc_simd> kSimds = {{"auto", PLC_SIMD_AUTO},
-                                  {"scalar", PLC_SIMD_SCALAR},
-                                  {"sse4", PLC_SIMD_SSE4},
-                                  {"avx2", PLC_SIMD_AVX2},
-                                  {"avx512", PLC_SIMD_AVX512}};
+const Choices<plc_simd> kSimds = {{"auto", PLC_SIMD_AUTO},     {"scalar", PLC_SIMD_SCALAR},
+                                  {"sse4", PLC_SIMD_SSE4},     {"avx2", PLC_SIMD_AVX2},
+                                  {"avx512", PLC_SIMD_AVX512}, {"neon", PLC_SIMD_NEON}};
 
 const Choices<plc_rest_length> kRestLengths = {{"zero", PLC_REST_ZERO}, {"mean", PLC_REST_MEAN}};
 

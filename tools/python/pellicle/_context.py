@@ -31,7 +31,7 @@ class Context:
     ----------
     threads : int
         At most so many, 1 .. 1024. 0: one per core.
-    simd : {"auto", "scalar", "sse4", "avx2", "avx512"}
+    simd : {"auto", "scalar", "sse4", "avx2", "avx512", "neon"}
         "auto": the best of this machine. Results are the same bits with all.
     memory_limit : int
         Bytes at a time beyond which a call raises `OutOfMemory`. 0: none.

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 Space = Literal["lps", "ras", "voxel"]
 Scalar = Literal["mean_curvature", "gaussian_curvature", "area", "valence", "movement"]
-Simd = Literal["auto", "scalar", "sse4", "avx2", "avx512"]
+Simd = Literal["auto", "scalar", "sse4", "avx2", "avx512", "neon"]
 Verdict = Literal["accept", "more", "stop"]
 Triple = tuple[float, float, float]
 Dims = tuple[int, int, int]

@@ -184,7 +184,8 @@ plc_simd simd_of(const std::string& word) {
                                          {"scalar", PLC_SIMD_SCALAR},
                                          {"sse4", PLC_SIMD_SSE4},
                                          {"avx2", PLC_SIMD_AVX2},
-                                         {"avx512", PLC_SIMD_AVX512}}));
+                                         {"avx512", PLC_SIMD_AVX512},
+                                         {"neon", PLC_SIMD_NEON}}));
 }
 
 }  // namespace plc::python

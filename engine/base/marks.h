@@ -1,0 +1,26 @@
+// Bytes that several tasks of a loop set to the same value, in no order.
+#pragma once
+#include <atomic>
+#include <cstdint>
+
+namespace plc {
+
+#if defined(__cpp_lib_atomic_ref)
+inline uint8_t read_mark(uint8_t& mark) {
+  return std::atomic_ref<uint8_t>(mark).load(std::memory_order_relaxed);
+}
+inline void set_mark(uint8_t& mark, uint8_t value) {
+  std::atomic_ref<uint8_t>(mark).store(value, std::memory_order_relaxed);
+}
+#elif defined(__GNUC__)  // Clang's library had none before its version 19
+inline uint8_t read_mark(uint8_t& mark) {
+  return __atomic_load_n(&mark, __ATOMIC_RELAXED);
+}
+inline void set_mark(uint8_t& mark, uint8_t value) {
+  __atomic_store_n(&mark, value, __ATOMIC_RELAXED);
+}
+#else
+#error "std::atomic_ref is needed"
+#endif
+
+}  // namespace plc
