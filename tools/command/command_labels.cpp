@@ -349,7 +349,8 @@ void add_label_options(CLI::App& command, ExtractOptions& options) {
   for (const char* other :
        {"--iso", "--inside", "--level-iso", "--window", "--pad", "--feature", "--sigma", "--levels",
         "--reduction", "--init", "--attach", "--structure", "--force", "--gradient",
-        "--gradient-tangent", "--gradient-bound", "--no-late-bubbles", "--trace", "--each-level"}) {
+        "--gradient-tangent", "--gradient-bound", "--no-late-bubbles", "--trace", "--each-level",
+        "--box", "--keep", "--quality"}) {
     labels->excludes(command.get_option(other));
   }
   labels->excludes(command.get_option("INPUT"));

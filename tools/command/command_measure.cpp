@@ -41,6 +41,7 @@ void add_scalars(TriangleMesh& mesh, const std::string& name, const std::vector<
   for (const double value : values) {
     scalars.values.push_back(static_cast<float>(std::isfinite(value) ? value : kNan));
   }
+  std::erase_if(mesh.scalars, [&](const Scalars& s) { return s.name == name; });  // of the file
   mesh.scalars.push_back(std::move(scalars));
 }
 
@@ -166,7 +167,7 @@ void check_outputs(const MeasureOptions& options) {
 }  // namespace
 
 void add_measure_options(CLI::App& command, MeasureOptions& options) {
-  command.add_option("MESH", options.mesh, ".stl, .ply, .obj, .off or .vtp, in mm")
+  command.add_option("MESH", options.mesh, mesh_suffixes(false) + ", in mm")
       ->required()
       ->type_name("");
   const auto text = [&](const std::string& name, const std::string& type,
@@ -196,7 +197,7 @@ void add_measure_options(CLI::App& command, MeasureOptions& options) {
   command
       .add_option("-o,--output", options.output,
                   "Mesh with MeanCurvature, GaussianCurvature, Geodesic and Distance at its "
-                  "vertices, NaN where there is none; .vtp or .ply")
+                  "vertices, NaN where there is none; .vtp, .ply, .vtk, .gii or .glb")
       ->type_name("FILE");
   command.add_option("--json", options.json, "All numbers as JSON")->type_name("FILE");
 }
