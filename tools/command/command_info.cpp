@@ -52,9 +52,9 @@ struct ImageFacts {
 ImageFacts facts_of(const plc_image& image) {
   ImageFacts facts{range_of(image), percentiles_of(image, kPercents), otsu_of(image),
                    bounds_of(image), bounds_of(image)};
-  for (size_t k = 0; k < 2; ++k) {
-    facts.ras.low[k] = -facts.lps.high[k];
-    facts.ras.high[k] = -facts.lps.low[k];
+  for (size_t k = 0; k < 2; ++k) {  // from 0, as -0 is no place
+    facts.ras.low[k] = 0 - facts.lps.high[k];
+    facts.ras.high[k] = 0 - facts.lps.low[k];
   }
   return facts;
 }
@@ -66,10 +66,10 @@ Json bounds_json(const Bounds& bounds) {
 Json image_json(const std::string& path, const LoadedVolume& volume) {
   const plc_image& image = volume.image;
   const ImageFacts facts = facts_of(image);
-  const Bounds voxels{{0, 0, 0},
-                      {static_cast<double>(image.dims[0] - 1),
-                       static_cast<double>(image.dims[1] - 1),
-                       static_cast<double>(image.dims[2] - 1)}};
+  const Bounds voxels{
+      {0, 0, 0},
+      {static_cast<double>(image.dims[0] - 1), static_cast<double>(image.dims[1] - 1),
+       static_cast<double>(image.dims[2] - 1)}};
   Json percentiles;
   for (size_t i = 0; i < kPercents.size(); ++i) {
     percentiles["p" + text_of(kPercents[i])] = facts.percentiles[i];
@@ -95,13 +95,12 @@ Json image_json(const std::string& path, const LoadedVolume& volume) {
 
 // "x to the left, y to the back, z to the head"
 std::string axes_text(const plc_image& image) {
-  static constexpr std::array<std::pair<char, const char*>, 6> kWays = {
-      {{'L', "to the left"},
-       {'R', "to the right"},
-       {'P', "to the back"},
-       {'A', "to the front"},
-       {'S', "to the head"},
-       {'I', "to the feet"}}};
+  static constexpr std::array<std::pair<char, const char*>, 6> kWays = {{{'L', "to the left"},
+                                                                         {'R', "to the right"},
+                                                                         {'P', "to the back"},
+                                                                         {'A', "to the front"},
+                                                                         {'S', "to the head"},
+                                                                         {'I', "to the feet"}}};
   const std::string letters = axis_letters(image);
   std::string text = letters + " (";
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -140,8 +139,8 @@ void print_image(const std::string& path, const LoadedVolume& volume) {
   }
   std::string percentiles;
   for (size_t i = 0; i < kPercents.size(); ++i) {
-    percentiles += (i > 0 ? ", p" : "p") + text_of(kPercents[i]) + " " +
-                   rounded(facts.percentiles[i]);
+    percentiles +=
+        (i > 0 ? ", p" : "p") + text_of(kPercents[i]) + " " + rounded(facts.percentiles[i]);
   }
   row("percentiles", percentiles);
   row("otsu", rounded(facts.otsu));
@@ -171,10 +170,9 @@ MeshFacts facts_of(plc_context* context, const TriangleMesh& mesh) {
   facts.whole.struct_size = sizeof facts.whole;
   int64_t count = 0;
   demand(context,
-         plc_mesh_component_measures(context, mesh.xyz.data(),
-                                     static_cast<int64_t>(mesh.xyz.size() / 3), mesh.abc.data(),
-                                     static_cast<int64_t>(mesh.abc.size() / 3), &facts.whole,
-                                     nullptr, 0, &count));
+         plc_mesh_component_measures(
+             context, mesh.xyz.data(), static_cast<int64_t>(mesh.xyz.size() / 3), mesh.abc.data(),
+             static_cast<int64_t>(mesh.abc.size() / 3), &facts.whole, nullptr, 0, &count));
   for (const Scalars& scalars : mesh.scalars) facts.values.push_back(scalars.name);
   return facts;
 }
@@ -231,8 +229,8 @@ void print_mesh(const std::string& path, const TriangleMesh& mesh, const MeshFac
                    ", genus " + (m.genus < 0 ? "not defined" : std::to_string(m.genus)) +
                    ", area " + rounded(m.area) + ", volume " + rounded(facts.whole.volume));
   row("bounds", box(facts.whole.low, facts.whole.high));
-  row("edges", rounded(facts.check.edge_min) + " .. " + rounded(facts.check.edge_max) +
-                   ", mean " + rounded(facts.check.edge_mean));
+  row("edges", rounded(facts.check.edge_min) + " .. " + rounded(facts.check.edge_max) + ", mean " +
+                   rounded(facts.check.edge_mean));
 }
 
 int run_mesh_file(const InfoOptions& options) {

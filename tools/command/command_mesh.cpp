@@ -37,8 +37,8 @@ class Merge {
   }
   // The number of the mesh that a face comes from.
   size_t source_of(int64_t face) const {
-    const auto next = std::upper_bound(first_face_.begin(), first_face_.end(),
-                                       static_cast<size_t>(face));
+    const auto next =
+        std::upper_bound(first_face_.begin(), first_face_.end(), static_cast<size_t>(face));
     return static_cast<size_t>(next - first_face_.begin()) - 1;
   }
 
@@ -91,7 +91,7 @@ class MeshWork {
                 options_.output.c_str(), mesh.xyz.size() / 3, mesh.abc.size() / 3,
                 static_cast<long long>(check.measures.components), kept_.c_str(),
                 check.valid != 0 ? "valid" : "not valid");
-    if (!valid_) {
+    if (check.valid == 0) {
       std::fprintf(stderr, "pellicle: %s: is not a valid surface, as it was; check tells why\n",
                    options_.output.c_str());
     }
@@ -122,13 +122,16 @@ class MeshWork {
     if (!options_.merge) return read_one(options_.inputs[0]);
     for (const std::string& path : options_.inputs) merge_.add(read_one(path));
     TriangleMesh mesh = merge_.finish();
-    if (valid_) check_merged(mesh);
+    check_merged(mesh);
     return mesh;
   }
 
-  void check_merged(const TriangleMesh& mesh) const {
+  // Walls of cavities, which are not valid alone, may be so together with what is around them.
+  void check_merged(const TriangleMesh& mesh) {
     const plc_check check = check_of(context_.get(), mesh);
-    if (check.valid != 0) return;
+    const bool were_valid = valid_;
+    valid_ = check.valid != 0;
+    if (valid_ || !were_valid) return;
     const std::string refused = ": not merged, as the result would not be a valid surface";
     if (check.self_intersections > 0) {
       throw Failure{options_.inputs[merge_.source_of(check.first_intersection[0])] + " and " +
@@ -190,7 +193,7 @@ class MeshWork {
   std::optional<plc_space> space_;
   std::string first_invalid_;
   std::string kept_;
-  bool valid_ = true;  // all that was read
+  bool valid_ = true;  // what was read
 };
 
 }  // namespace

@@ -15,9 +15,9 @@ namespace plc::tools {
 struct MeshOptions {
   std::vector<std::string> inputs;
   std::string output;
-  std::string image;                       // "": none
-  std::optional<plc_space> from;           // of files that name no space
-  std::optional<plc_space> space;          // "": that of the first input
+  std::string image;               // "": none
+  std::optional<plc_space> from;   // of files that name no space
+  std::optional<plc_space> space;  // "": that of the first input
   std::optional<std::array<double, 6>> crop;
   KeepRule keep;
   NiftiFrame nifti_frame = NiftiFrame::kAuto;
@@ -26,8 +26,8 @@ struct MeshOptions {
 
 void add_mesh_options(CLI::App& command, MeshOptions& options);
 
-// Returns the exit code: 0. Never makes a valid mesh invalid: Failure, and nothing is written, where
-// it would.
+// Returns the exit code: 0. Never makes a valid mesh invalid: Failure, and nothing is written,
+// where it would.
 int run_mesh(const MeshOptions& options);
 
 }  // namespace plc::tools

@@ -12,8 +12,12 @@ namespace {
 
 ExtractJob job_of(const ExtractOptions& options, const plc_parameters& parameters,
                   const IsoChoice& iso, const std::string& name) {
-  return {parameters, iso, named(options.output, name), named(options.report, name),
-          named(options.trace, name), false};
+  return {parameters,
+          iso,
+          named(options.output, name),
+          named(options.report, name),
+          named(options.trace, name),
+          false};
 }
 
 template <typename T>

@@ -44,7 +44,9 @@ std::string names_of(const Choices<T>& choices) {
 using Preset = void (*)(plc_parameters& p);
 
 void draft(plc_parameters& p) {
+  constexpr double kSoonCalm = 1e-4;  // ten times the default
   p.late_bubbles = 0;
+  p.epsilon = kSoonCalm;
 }
 void normal(plc_parameters&) {}
 void fine(plc_parameters& p) {
@@ -173,7 +175,9 @@ class Declarations {
   void quality() {
     group_ = "Mesh";
     text("--quality", "draft|normal|fine", "normal",
-         "QUALITY",
+         "Preset, on top of which the other options go: draft, a first look (--no-late-bubbles "
+         "--epsilon 1e-4: parts beside the one the bubble meets are missing); normal, the "
+         "defaults; fine, thin parts whole (--mesh adaptive)",
          [&p = p_](const std::string& s) { to_choice("--quality", s, kQualities)(p); });
   }
 

@@ -14,10 +14,10 @@ plc_measures measures_of_mesh(plc_context* context, const TriangleMesh& mesh) {
   plc_component_measures whole{};
   whole.struct_size = sizeof whole;
   int64_t components = 0;
-  demand(context, plc_mesh_component_measures(
-                      context, mesh.xyz.data(), static_cast<int64_t>(mesh.xyz.size() / 3),
-                      mesh.abc.data(), static_cast<int64_t>(mesh.abc.size() / 3), &whole, nullptr,
-                      0, &components));
+  demand(context,
+         plc_mesh_component_measures(
+             context, mesh.xyz.data(), static_cast<int64_t>(mesh.xyz.size() / 3), mesh.abc.data(),
+             static_cast<int64_t>(mesh.abc.size() / 3), &whole, nullptr, 0, &components));
   return {sizeof(plc_measures), whole.vertices, whole.faces, components,
           whole.euler,          whole.genus,    whole.area,  whole.volume};
 }
@@ -46,8 +46,8 @@ KeptSurface kept_surface(plc_context* context, const plc_surface* surface,
   result.bodies = kept.size();
   result.kept = static_cast<size_t>(std::count(kept.begin(), kept.end(), char{1}));
   if (result.kept == 0) {
-    throw Failure{"--keep " + options.keep.text + ": none of the " +
-                  std::to_string(result.bodies) + " bodies is as large; the largest has " +
+    throw Failure{"--keep " + options.keep.text + ": none of the " + std::to_string(result.bodies) +
+                  " bodies is as large; the largest has " +
                   text_of(*std::max_element(bodies.volumes.begin(), bodies.volumes.end())) +
                   " mm3"};
   }

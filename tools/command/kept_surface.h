@@ -1,5 +1,5 @@
-// A surface of the engine as `pellicle extract` writes it: what --keep leaves of it, where --box puts
-// it.
+// A surface of the engine as `pellicle extract` writes it: what --keep leaves of it, where --box
+// puts it.
 #pragma once
 #include <cstddef>
 

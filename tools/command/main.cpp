@@ -24,6 +24,7 @@
 #include "tools/command/command_phantom.h"
 #include "tools/command/command_render.h"
 #include "tools/command/interrupt.h"
+#include "tools/command/manual_page.h"
 #include "tools/command/option_values.h"
 #include "tools/command/slicer_description.h"
 #include "tools/file/failure.h"
@@ -61,6 +62,7 @@ class Command {
  public:
   explicit Command(InterruptGuard& interrupt) : interrupt_(interrupt) {
     app_.set_version_flag("--version", plc_version_string());
+    add_manual_option(app_);
     app_.require_subcommand(1);
     app_.get_formatter()->column_width(kHelpColumn);
     extract_ = add("extract", "Extract a closed surface from a volume");

@@ -84,7 +84,9 @@ std::vector<double> volumes_of(const TriangleMesh& mesh, const Components& compo
 class Surroundings {
  public:
   Surroundings(const TriangleMesh& mesh, const Components& components)
-      : mesh_(mesh), components_(components), by_z_(components.first_vertex.size()),
+      : mesh_(mesh),
+        components_(components),
+        by_z_(components.first_vertex.size()),
         crossings_(components.first_vertex.size()) {
     std::iota(by_z_.begin(), by_z_.end(), 0U);
     std::sort(by_z_.begin(), by_z_.end(), [&](uint32_t a, uint32_t b) { return z(a) < z(b); });
@@ -117,15 +119,17 @@ class Surroundings {
     }
   }
 
-  // On which side of the edge a point lies, seen along x. The same for both faces of the edge, and
-  // never on it, so that a ray through an edge or a vertex crosses as many faces as one beside it.
+  // On which side of the edge a point lies, seen along x. The same for both faces of the edge. One
+  // on it is taken to lie beside it, by a very small bit along y and a much smaller one along z, so
+  // that a ray through an edge or a vertex crosses as many faces as one beside it.
   bool left_of(uint32_t a, uint32_t b, const double* q) const {
     const bool turned = a > b;
     if (turned) std::swap(a, b);
     const double* p = place(mesh_, a);
     const double* r = place(mesh_, b);
     const double side = (r[1] - p[1]) * (q[2] - p[2]) - (r[2] - p[2]) * (q[1] - p[1]);
-    return (side >= 0) != turned;
+    const double moved = side != 0 ? side : r[2] != p[2] ? p[2] - r[2] : r[1] - p[1];
+    return (moved > 0) != turned;
   }
 
   bool hits(const uint32_t* abc, const double* q) const {
@@ -172,10 +176,9 @@ Bodies bodies_of(const TriangleMesh& mesh) {
   std::vector<uint32_t> outer(count);  // the component that faces outward of each one's body
   for (uint32_t c = 0; c < count; ++c) {
     const std::vector<uint32_t> around = surroundings.around(c);
-    const auto smallest =
-        std::min_element(around.begin(), around.end(), [&](uint32_t a, uint32_t b) {
-          return std::abs(volumes[a]) < std::abs(volumes[b]);
-        });
+    const auto smallest = std::min_element(
+        around.begin(), around.end(),
+        [&](uint32_t a, uint32_t b) { return std::abs(volumes[a]) < std::abs(volumes[b]); });
     outer[c] = around.size() % 2 == 0 ? c : *smallest;
   }
   std::vector<uint32_t> number(count, Bodies::kNone);

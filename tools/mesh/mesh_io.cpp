@@ -157,7 +157,8 @@ std::string space_in(std::string_view comment) {
 bool is_scalar_name(std::string_view name) {
   constexpr size_t kLongest = 64;
   return !name.empty() && name.size() <= kLongest &&
-         std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0; });
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0; });
 }
 
 bool is_mesh_path(const std::string& path) {

@@ -1,8 +1,8 @@
 // Reading and writing of triangle meshes: STL, PLY, OBJ, OFF, VTP, VTK, GIFTI; writing of GLB and
 // 3MF. No library reads all of them, tells what is wrong with a damaged file in one line, takes no
-// memory that the file has not, and writes the same bytes everywhere. VTK would, of those that it
-// knows, but brings two hundred libraries; tinygltf, gifticlib and lib3mf know one format each and
-// hold the mesh once more. What their formats are made of - XML, JSON, zlib, zip - libraries do.
+// memory that the file has not, and writes the same bytes everywhere. VTK knows most of them, but
+// is 135 libraries of 105 MB; tinygltf, gifticlib and lib3mf know one format each and hold the mesh
+// once more. What the formats are made of - XML, JSON, zlib, zip - libraries do.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -29,9 +29,9 @@ inline constexpr const char* kVoxel = "voxel";  // indices of an image
 }  // namespace space_names
 
 struct TriangleMesh {
-  std::vector<double> xyz;         // three per vertex
-  std::vector<uint32_t> abc;       // three per face
-  std::vector<float> normals;      // three per vertex, or none
+  std::vector<double> xyz;     // three per vertex
+  std::vector<uint32_t> abc;   // three per face
+  std::vector<float> normals;  // three per vertex, or none
   std::vector<Scalars> scalars{};
   bool doubles = false;  // how the coordinates are written, else as floats
   std::string space{};   // one of space_names; "" where that is not known

@@ -61,8 +61,7 @@ std::string model_of(const TriangleMesh& mesh) {
 // Between libarchive, which is C, and the file, which may throw: exceptions wait until it is left.
 class Zip {
  public:
-  explicit Zip(AtomicFile& file)
-      : file_(file), archive_(archive_write_new(), archive_write_free) {
+  explicit Zip(AtomicFile& file) : file_(file), archive_(archive_write_new(), archive_write_free) {
     if (archive_ == nullptr) throw std::bad_alloc();
     demand(archive_write_set_format_zip(archive_.get()));
     demand(archive_write_set_bytes_in_last_block(archive_.get(), 1));

@@ -65,8 +65,7 @@ class GiftiParser : public XmlVisitor {
     array.type = xml_attribute(attributes, "DataType");
     array.encoding = xml_attribute(attributes, "Encoding");
     array.big_endian = xml_attribute(attributes, "Endian") == "BigEndian";
-    array.columns_first =
-        xml_attribute(attributes, "ArrayIndexingOrder") == "ColumnMajorOrder";
+    array.columns_first = xml_attribute(attributes, "ArrayIndexingOrder") == "ColumnMajorOrder";
     array.rows = to_size(xml_attribute(attributes, "Dim0"));
     const std::string columns = xml_attribute(attributes, "Dim1");
     if (!columns.empty()) array.columns = to_size(columns);
@@ -201,8 +200,7 @@ std::string packed_base64(const std::string& path, const std::string& data) {
   uLongf size = compressBound(data.size());
   std::string packed(size, '\0');
   if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
-                reinterpret_cast<const Bytef*>(data.data()), data.size(),
-                Z_BEST_SPEED) != Z_OK) {
+                reinterpret_cast<const Bytef*>(data.data()), data.size(), Z_BEST_SPEED) != Z_OK) {
     throw Failure{path + ": an array cannot be compressed"};
   }
   packed.resize(size);
@@ -210,18 +208,19 @@ std::string packed_base64(const std::string& path, const std::string& data) {
 }
 
 std::string metadata(const std::string& name, const std::string& value) {
-  return "<MD><Name><![CDATA[" + name + "]]></Name><Value><![CDATA[" + value +
-         "]]></Value></MD>\n";
+  return "<MD><Name><![CDATA[" + name + "]]></Name><Value><![CDATA[" + value + "]]></Value></MD>\n";
 }
 
-void write_array(AtomicFile& file, const std::string& intent, const std::string& type,
-                 size_t rows, int columns, const std::string& about, const std::string& data) {
+void write_array(AtomicFile& file, const std::string& intent, const std::string& type, size_t rows,
+                 int columns, const std::string& about, const std::string& data) {
   std::string out = "<DataArray Intent=\"" + intent + "\" DataType=\"" + type +
                     "\" ArrayIndexingOrder=\"RowMajorOrder\" Dimensionality=\"" +
                     (columns == 1 ? "1" : "2") + "\" Dim0=\"" + std::to_string(rows) + "\" ";
   if (columns > 1) out += "Dim1=\"" + std::to_string(columns) + "\" ";
-  out += "Encoding=\"GZipBase64Binary\" Endian=\"LittleEndian\" ExternalFileName=\"\" "
-         "ExternalFileOffset=\"\">\n" + about + "<Data>";
+  out +=
+      "Encoding=\"GZipBase64Binary\" Endian=\"LittleEndian\" ExternalFileName=\"\" "
+      "ExternalFileOffset=\"\">\n" +
+      about + "<Data>";
   out += packed_base64(intent, data) + "</Data>\n</DataArray>\n";
   drain(file, out, true);
 }

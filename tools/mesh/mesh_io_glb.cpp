@@ -32,11 +32,8 @@ Json matrix_of(const std::string& space) {
   return {m, 0, 0, 0, 0, 0, -m, 0, 0, m, 0, 0, 0, 0, 0, 1};
 }
 
-// The colours of glTF are linear.
-uint8_t linear_byte(double srgb) {
-  const double linear =
-      srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-  return static_cast<uint8_t>(std::lround(std::clamp(linear, 0.0, 1.0) * 255));
+uint8_t byte_of(double part) {
+  return static_cast<uint8_t>(std::lround(std::clamp(part, 0.0, 1.0) * 255));
 }
 
 // The block of arrays, and what the description says of it.
@@ -69,8 +66,7 @@ class Arrays {
 };
 
 int add_positions(Arrays& arrays, const TriangleMesh& mesh) {
-  const int index =
-      arrays.add<float>("VEC3", kFloat, kArrayBuffer, mesh.xyz.size() / 3, mesh.xyz);
+  const int index = arrays.add<float>("VEC3", kFloat, kArrayBuffer, mesh.xyz.size() / 3, mesh.xyz);
   std::array<double, 3> low = {mesh.xyz[0], mesh.xyz[1], mesh.xyz[2]};
   std::array<double, 3> high = low;
   for (size_t i = 0; i < mesh.xyz.size(); ++i) {
@@ -88,11 +84,11 @@ int add_positions(Arrays& arrays, const TriangleMesh& mesh) {
 int add_colours(Arrays& arrays, const Scalars& scalars) {
   std::vector<uint8_t> bytes;
   for (const Rgb& rgb : vertex_colours(scalars)) {
-    for (const double x : rgb) bytes.push_back(linear_byte(x));
+    for (const double x : rgb) bytes.push_back(byte_of(x));
     bytes.push_back(255);
   }
-  const int index = arrays.add<uint8_t>("VEC4", kUnsignedByte, kArrayBuffer,
-                                        scalars.values.size(), bytes);
+  const int index =
+      arrays.add<uint8_t>("VEC4", kUnsignedByte, kArrayBuffer, scalars.values.size(), bytes);
   arrays.accessor(index)["normalized"] = true;
   return index;
 }
@@ -101,8 +97,7 @@ Json primitive_of(Arrays& arrays, const TriangleMesh& mesh) {
   Json attributes = {{"POSITION", add_positions(arrays, mesh)}};
   const size_t vertices = mesh.xyz.size() / 3;
   if (mesh.normals.size() == mesh.xyz.size()) {
-    attributes["NORMAL"] =
-        arrays.add<float>("VEC3", kFloat, kArrayBuffer, vertices, mesh.normals);
+    attributes["NORMAL"] = arrays.add<float>("VEC3", kFloat, kArrayBuffer, vertices, mesh.normals);
   }
   if (!mesh.scalars.empty()) attributes["COLOR_0"] = add_colours(arrays, mesh.scalars[0]);
   for (const Scalars& scalars : mesh.scalars) {
@@ -114,8 +109,8 @@ Json primitive_of(Arrays& arrays, const TriangleMesh& mesh) {
     for (float& value : values) value = std::isfinite(value) ? value : 0;
     attributes[name] = arrays.add<float>("SCALAR", kFloat, kArrayBuffer, vertices, values);
   }
-  const int corners = arrays.add<uint32_t>("SCALAR", kUnsignedInt, kElementArrayBuffer,
-                                           mesh.abc.size(), mesh.abc);
+  const int corners =
+      arrays.add<uint32_t>("SCALAR", kUnsignedInt, kElementArrayBuffer, mesh.abc.size(), mesh.abc);
   return {{"attributes", attributes}, {"indices", corners}, {"material", 0}};
 }
 
@@ -151,8 +146,8 @@ void write_glb(AtomicFile& file, const TriangleMesh& mesh) {
   std::string json = description_of(arrays, mesh).dump();
   json.resize((json.size() + 3) / 4 * 4, ' ');
   const std::string& block = arrays.bytes();
-  const size_t size = kHeader + kChunkHeader + json.size() +
-                      (block.empty() ? 0 : kChunkHeader + block.size());
+  const size_t size =
+      kHeader + kChunkHeader + json.size() + (block.empty() ? 0 : kChunkHeader + block.size());
   if (size > std::numeric_limits<uint32_t>::max()) {
     throw Failure{"a GLB file cannot hold " + std::to_string(mesh.xyz.size() / 3) + " vertices"};
   }

@@ -1,6 +1,6 @@
-// VTK's legacy PolyData (.vtk): written in binary, version 3.0, which all that read it know; read in
-// ASCII and binary, with the cells of versions before and from 5.0. What follows colours, vectors,
-// tensors or values of cells is passed over.
+// VTK's legacy PolyData (.vtk): written in binary, version 3.0, which all that read it know; read
+// in ASCII and binary, with the cells of versions before and from 5.0. What follows colours,
+// vectors, tensors or values of cells is passed over.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -30,12 +30,12 @@ double load_big(const char* at) {
 }
 
 constexpr ValueType kTypes[] = {
-    {"float", 4, load_big<float>},         {"double", 8, load_big<double>},
-    {"int", 4, load_big<int32_t>},         {"unsigned_int", 4, load_big<uint32_t>},
-    {"short", 2, load_big<int16_t>},       {"unsigned_short", 2, load_big<uint16_t>},
-    {"char", 1, load_big<int8_t>},         {"unsigned_char", 1, load_big<uint8_t>},
-    {"vtktypeint64", 8, load_big<int64_t>}, {"vtktypeint32", 4, load_big<int32_t>},
-    {"vtkIdType", 4, load_big<int32_t>},   {"long", 8, load_big<int64_t>},
+    {"float", 4, load_big<float>},           {"double", 8, load_big<double>},
+    {"int", 4, load_big<int32_t>},           {"unsigned_int", 4, load_big<uint32_t>},
+    {"short", 2, load_big<int16_t>},         {"unsigned_short", 2, load_big<uint16_t>},
+    {"char", 1, load_big<int8_t>},           {"unsigned_char", 1, load_big<uint8_t>},
+    {"vtktypeint64", 8, load_big<int64_t>},  {"vtktypeint32", 4, load_big<int32_t>},
+    {"vtkIdType", 4, load_big<int32_t>},     {"long", 8, load_big<int64_t>},
     {"unsigned_long", 8, load_big<uint64_t>}};
 
 const ValueType* find_type(std::string_view name) {
@@ -111,9 +111,9 @@ class VtkReader {
     } else if (key == "FIELD") {
       fields();
     } else {
-      static constexpr std::string_view kLast[] = {"CELL_DATA",    "COLOR_SCALARS", "VECTORS",
-                                                   "TENSORS",      "TENSORS6",
-                                                   "LOOKUP_TABLE", "TEXTURE_COORDINATES"};
+      static constexpr std::string_view kLast[] = {
+          "CELL_DATA",    "COLOR_SCALARS",      "VECTORS", "TENSORS", "TENSORS6",
+          "LOOKUP_TABLE", "TEXTURE_COORDINATES"};
       if (std::find(std::begin(kLast), std::end(kLast), key) == std::end(kLast)) {
         text_.fail("unknown keyword " + printable(key));
       }

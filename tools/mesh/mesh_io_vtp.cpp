@@ -89,7 +89,7 @@ class VtpParser : public XmlVisitor {
                           xml_attribute(attributes, "format") == "ascii" && space_.text.empty();
     const bool is_number = xml_attribute(attributes, "type").find("nt") != std::string::npos ||
                            xml_attribute(attributes, "type").find("Float") != std::string::npos;
-    array_ = is_space           ? &space_
+    array_ = is_space          ? &space_
              : pieces_.empty() ? nullptr
                                : wanted(pieces_.back(), name, is_number);
     if (array_ == nullptr) return;

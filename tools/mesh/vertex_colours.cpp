@@ -8,23 +8,23 @@ namespace plc::tools {
 
 namespace {
 
-constexpr Rgb kGrey = {0.6, 0.6, 0.6};
+constexpr Rgb kGrey = {0.32, 0.32, 0.32};
 
-// Viridis of matplotlib (S. van der Walt & N. Smith) at eighths, between which it is nearly linear.
-constexpr std::array<Rgb, 9> kViridis = {{{0.267, 0.005, 0.329},
-                                          {0.279, 0.175, 0.483},
-                                          {0.230, 0.322, 0.546},
-                                          {0.173, 0.449, 0.558},
-                                          {0.128, 0.567, 0.551},
-                                          {0.158, 0.684, 0.502},
-                                          {0.369, 0.789, 0.383},
-                                          {0.678, 0.864, 0.190},
-                                          {0.993, 0.906, 0.144}}};
+// Viridis of matplotlib (S. van der Walt & N. Smith) at eighths, made linear.
+constexpr std::array<Rgb, 9> kViridis = {{{0.0579, 0.0004, 0.0884},
+                                          {0.0633, 0.0258, 0.1986},
+                                          {0.0432, 0.0846, 0.2591},
+                                          {0.0253, 0.1698, 0.2717},
+                                          {0.0149, 0.2814, 0.2643},
+                                          {0.0215, 0.4255, 0.2159},
+                                          {0.1122, 0.5854, 0.1213},
+                                          {0.4173, 0.7180, 0.0301},
+                                          {0.9841, 0.7993, 0.0183}}};
 
-// Full hue, a part of whiteness: HSV with S = 0.65, V = 0.9.
+// HSV with S = 0.9 and V = 0.8.
 Rgb hue_colour(double hue) {
-  constexpr double kValue = 0.9;
-  constexpr double kSaturation = 0.65;
+  constexpr double kValue = 0.8;
+  constexpr double kSaturation = 0.9;
   Rgb rgb{};
   for (size_t k = 0; k < 3; ++k) {
     const double turn = std::fmod(hue * 6 + (k == 0 ? 5.0 : k == 1 ? 3.0 : 1.0), 6);

@@ -8,7 +8,7 @@
 
 namespace plc::tools {
 
-using Rgb = std::array<double, 3>;  // sRGB, 0 .. 1
+using Rgb = std::array<double, 3>;  // linear, as glTF has them, 0 .. 1
 
 // Of a label: labels that follow each other are as far apart as hues can be. 0: grey.
 Rgb label_colour(uint32_t label);

@@ -44,9 +44,9 @@ LoadedVolume cut_out(const std::string& path, const LoadedVolume& volume, const 
       std::memcpy(to, volume.bytes.data() + first * size, row);
     }
   }
-  const Place origin = lps_of(whole, {static_cast<double>(box.low[0]),
-                                      static_cast<double>(box.low[1]),
-                                      static_cast<double>(box.low[2])});
+  const Place origin =
+      lps_of(whole, {static_cast<double>(box.low[0]), static_cast<double>(box.low[1]),
+                     static_cast<double>(box.low[2])});
   for (size_t k = 0; k < 3; ++k) {
     part.image.spacing[k] = whole.spacing[k];
     part.image.origin[k] = origin[k];

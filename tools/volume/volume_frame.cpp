@@ -71,7 +71,8 @@ double obliquity(const plc_image& image) {
       if (k == nearest_axis(image, axis)) along = std::abs(x);
     }
     // Of small angles the arc cosine knows little.
-    largest = std::max(largest, std::atan2(std::sqrt(std::max(0.0, square - along * along)), along));
+    largest =
+        std::max(largest, std::atan2(std::sqrt(std::max(0.0, square - along * along)), along));
   }
   return largest * 180 / std::numbers::pi;
 }

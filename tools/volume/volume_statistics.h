@@ -12,8 +12,8 @@ namespace plc::tools {
 const char* voxel_type_name(plc_voxel_type type);
 
 struct VolumeRange {
-  double low, high;   // NaN where no voxel is finite
-  int64_t finite;     // voxels
+  double low, high;  // NaN where no voxel is finite
+  int64_t finite;    // voxels
   int64_t not_finite;
 };
 
