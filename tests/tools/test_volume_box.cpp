@@ -21,7 +21,8 @@ using plc::tools::voxel_of;
 LoadedVolume numbered() {
   const int64_t dims[3] = {7, 6, 5};
   LoadedVolume volume = plc::tools::make_volume("image", PLC_U16, dims);
-  for (uint16_t i = 0; i < 7 * 6 * 5; ++i) std::memcpy(volume.bytes.data() + 2 * i, &i, sizeof i);
+  constexpr uint16_t kCount = 7 * 6 * 5;
+  for (uint16_t i = 0; i < kCount; ++i) std::memcpy(volume.bytes.data() + 2 * i, &i, sizeof i);
   const double direction[9] = {0.8, 0.6, 0, -0.6, 0.8, 0, 0, 0, -1};
   const double spacing[3] = {0.5, 2, 3};
   const double origin[3] = {10, -20, 30};
