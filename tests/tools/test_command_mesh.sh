@@ -193,6 +193,8 @@ left_over >/dev/null
 works "to RAS" 0 "$pellicle" mesh all.ply --space ras -o ras.ply
 is "RAS is named" "$(info .space ras.ply)" RAS
 near "RAS" "$(info '.bounds.low[0]' ras.ply)" "$(info '-.bounds.high[0]' all.ply)" 0
+works "a distance between spaces" 0 "$pellicle" measure all.ply --distance ras.ply --json out/d.json
+near "a distance between spaces" "$(json out/d.json .distance.hausdorff)" 0 1e-9
 works "and back, without --space as it is" 0 "$pellicle" mesh ras.ply --space lps -o out/back.ply
 cmp -s out/back.ply all.ply || fails "LPS to RAS and back is another file"
 works "a start in another space" 0 "$pellicle" extract blobs.nrrd --iso "$otsu" --init mesh=ras.ply --levels 0 \
@@ -200,6 +202,7 @@ works "a start in another space" 0 "$pellicle" extract blobs.nrrd --iso "$otsu" 
 near "a start in another space" "$(info .volume out/start.ply)" "$(info .volume all.ply)" 30
 left_over >/dev/null
 refused "voxels without an image" "only its image" "$pellicle" mesh all.ply --space voxel -o out/a.ply
+refused "a distance from mm to voxels" "only its image" "$pellicle" measure all.ply --distance voxels.ply
 works "voxels" 0 "$pellicle" mesh all.ply --space voxel --image blobs.nrrd -o out/voxel.ply
 valid out/voxel.ply
 near "voxels" "$(info '.bounds.low[0]' out/voxel.ply)" "$(info '(.bounds.low[0] - 10) / 0.5' all.ply)" 1e-4

@@ -11,6 +11,7 @@
 #include "tools/command/engine_handles.h"
 #include "tools/command/measure_report.h"
 #include "tools/command/mesh_precision.h"
+#include "tools/command/mesh_spaces.h"
 #include "tools/command/option_values.h"
 #include "tools/command/report.h"
 #include "tools/file/failure.h"
@@ -122,7 +123,10 @@ plc_distances distances(plc_context* context, const TriangleMesh& from, const Tr
 
 DistanceSummary measure_distance(plc_context* context, TriangleMesh& mesh,
                                  const MeasureOptions& options) {
-  const TriangleMesh other = read_mesh(options.other);
+  TriangleMesh other = read_mesh(options.other);
+  if (const auto space = space_named(mesh.space)) {
+    bring_to(other, *space, *space, nullptr, options.other);
+  }
   if (mesh.abc.empty()) throw Failure{options.mesh + ": has no faces"};
   if (other.abc.empty()) throw Failure{options.other + ": has no faces"};
   std::vector<double> distance(mesh.xyz.size() / 3);

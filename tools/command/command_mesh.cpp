@@ -108,11 +108,7 @@ class MeshWork {
     const plc_space assumed = options_.from.value_or(PLC_SPACE_LPS);
     const plc_image* image = options_.image.empty() ? nullptr : &image_.image;
     if (!space_) {
-      space_ = options_.space;
-      if (!space_ && mesh.space.empty()) space_ = assumed;
-      for (const auto& [name, space] : kSpaces) {
-        if (!space_ && mesh.space == space_name(space)) space_ = space;
-      }
+      space_ = options_.space ? *options_.space : space_named(mesh.space).value_or(assumed);
     }
     bring_to(mesh, *space_, assumed, image, path);
     return mesh;

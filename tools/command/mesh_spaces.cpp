@@ -57,6 +57,13 @@ const char* space_name(plc_space space) {
   return space_names::kVoxel;
 }
 
+std::optional<plc_space> space_named(const std::string& name) {
+  for (const plc_space space : {PLC_SPACE_LPS, PLC_SPACE_RAS, PLC_SPACE_VOXEL}) {
+    if (name == space_name(space)) return space;
+  }
+  return std::nullopt;
+}
+
 void bring_to(TriangleMesh& mesh, plc_space space, plc_space assumed, const plc_image* image,
               const std::string& path) {
   if (mesh.space.empty()) mesh.space = space_name(assumed);

@@ -1,5 +1,6 @@
 // Meshes from one space of coordinates to another.
 #pragma once
+#include <optional>
 #include <string>
 
 #include "engine/pellicle.h"
@@ -7,8 +8,9 @@
 
 namespace plc::tools {
 
-// As files name it.
+// As files name it, and back; nothing for "".
 const char* space_name(plc_space space);
+std::optional<plc_space> space_named(const std::string& name);
 
 // Brings the mesh to `space`; where its file names none it is taken to be in `assumed`. Voxels need
 // the image whose they are, which may be NULL where none are met: else Failure, which names `path`.

@@ -19,7 +19,7 @@ int64_t resolved(const TextReader& text, int64_t index, size_t count) {
 std::string space_of_comments(std::string_view data) {
   while (!data.empty() && data.front() == '#') {
     const size_t end = std::min(data.find('\n'), data.size() - 1);
-    const std::string space = space_in(data.substr(0, end));
+    std::string space = space_in(data.substr(0, end));
     if (!space.empty()) return space;
     data.remove_prefix(end + 1);
   }
