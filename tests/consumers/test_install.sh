@@ -61,6 +61,10 @@ PKG_CONFIG_LIBDIR=$libdir/pkgconfig quietly "a host of the shared library needs 
 found=$(ldd "$prefix/bin/pellicle" | awk -v name="$soname" '$1 == name {print $3}')
 [ "$(realpath "$found")" = "$library.$version" ] || fails "the command finds $found, not $library"
 
+"$prefix/bin/pellicle" --man | cmp -s - "$prefix/share/man/man1/pellicle.1" ||
+  fails "the manual page is not that of the command"
+[ -s "$prefix/share/bash-completion/completions/pellicle" ] || fails "not installed: the completion for bash"
+
 module=$libdir/pellicle/cli-modules/PellicleExtract
 "$module" --xml >"$here/module.xml" 2>&1
 "$prefix/bin/pellicle" extract --xml | cmp -s - "$here/module.xml" ||
@@ -109,6 +113,11 @@ for host in host_c host_cpp; do
   done
 done
 runs shared "$here/host_c-shared/host_c" "$here/torus.obj"
+# As engine/README.md has it: the host finds the library by itself.
+# shellcheck disable=SC2046
+quietly "a host that is told where the library lies" cc "$here/consumers/host_c/host.c" \
+  $(pkg-config --cflags --libs pellicle) -Wl,-rpath,"$(pkg-config --variable=libdir pellicle)" -lm \
+  -o "$here/host_rpath" && quietly "a host that knows where the library lies" "$here/host_rpath"
 quietly "check of what host_c writes" "$prefix/bin/pellicle" check "$here/torus.obj"
 
 # Another minor version than there is, and a component that there is not, are refused.

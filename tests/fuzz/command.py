@@ -32,14 +32,16 @@ EXTRACT = ['extract', 'good.nrrd', '-o', 'out/a.ply', '--iso', '100', '--max-ite
 
 def of_volume(path):
     extract = ['-o', 'out/a.ply', '--max-iterations', '3']
-    return [['extract', path, '--iso', '100', *extract],
+    return [['extract', path, '--iso', '100', *extract], ['info', path],
             ['extract', path, '--iso', '100', '--levels', '0', '--report', 'out/a.json', *extract],
             ['extract', '--labels', path, *extract],
             [*EXTRACT, '--init', f'mask={path}']]
 
 
 def of_mesh(path):
-    return [['check', path], ['check', path, '--json'],
+    return [['check', path], ['check', path, '--json'], ['info', path],
+            ['mesh', path, '-o', 'out/a.vtk', '--keep', 'largest'],
+            ['mesh', path, '-o', 'out/a.glb'],
             ['measure', path, '--curvature', '--geodesic', '0,0,0', '-o', 'out/a.vtp', '--json',
              'out/a.json'],
             ['measure', path, '--distance', path],

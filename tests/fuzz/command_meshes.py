@@ -125,11 +125,51 @@ def vtp(form, packed=False, coded=False):
     return out + b'</VTKFile>\n'
 
 
+def vtk(binary, new=False):
+    kind = 'BINARY' if binary else 'ASCII'
+
+    def block(code, values):
+        if binary:
+            return struct.pack(f'>{len(values)}{code}', *values) + b'\n'
+        return (words(values) + '\n').encode()
+    out = (f'# vtk DataFile Version {"5.1" if new else "3.0"}\nball SPACE=LPS\n{kind}\n'
+           f'DATASET POLYDATA\nPOINTS {len(POINTS)} float\n').encode()
+    out += block('f', [x for p in POINTS for x in p])
+    if new:
+        out += (f'METADATA\nINFORMATION 0\n\nPOLYGONS {len(FACES) + 1} {3 * len(FACES)}\n'
+                'OFFSETS vtktypeint64\n').encode()
+        out += block('q', [3 * i for i in range(len(FACES) + 1)]) + b'CONNECTIVITY vtktypeint64\n'
+        out += block('q', [v for f in FACES for v in f])
+    else:
+        out += f'POLYGONS {len(FACES)} {4 * len(FACES)}\n'.encode()
+        out += block('i', [v for f in FACES for v in (3, *f)])
+    out += f'POINT_DATA {len(POINTS)}\nSCALARS Height float 1\nLOOKUP_TABLE default\n'.encode()
+    return out + block('f', [p[2] for p in POINTS])
+
+
+def gifti(encoding):
+    arrays = [('POINTSET', 'FLOAT32', 'f', [x * s for p in POINTS for x, s in zip(p, (-1, -1, 1))]),
+              ('TRIANGLE', 'INT32', 'i', [v for f in FACES for v in f])]
+    out = '<?xml version="1.0" encoding="UTF-8"?>\n<GIFTI Version="1.0" NumberOfDataArrays="2">\n'
+    for intent, kind, code, values in arrays:
+        data = struct.pack(f'<{len(values)}{code}', *values)
+        text = {'ASCII': lambda: words(values),
+                'Base64Binary': lambda: base64.b64encode(data).decode(),
+                'GZipBase64Binary': lambda: base64.b64encode(zlib.compress(data)).decode()}[encoding]()
+        out += (f'<DataArray Intent="NIFTI_INTENT_{intent}" DataType="NIFTI_TYPE_{kind}" '
+                f'ArrayIndexingOrder="RowMajorOrder" Dimensionality="2" Dim0="{len(values) // 3}" '
+                f'Dim1="3" Encoding="{encoding}" Endian="LittleEndian">\n<Data>{text}</Data>\n'
+                '</DataArray>\n')
+    return (out + '</GIFTI>\n').encode()
+
+
 def meshes():
     """Name of a case, its files and the path that the command is given."""
     one = {'text.stl': stl_text(), 'a.stl': stl_binary(), 'text.ply': ply(), 'a.ply': ply('<'),
            'big.ply': ply('>'), 'a.obj': obj(), 'a.off': off(), 'text.vtp': vtp('ascii'),
            'binary.vtp': vtp('binary'), 'packed.vtp': vtp('binary', True),
            'a.vtp': vtp('appended'), 'coded.vtp': vtp('appended', False, True),
-           'zip.vtp': vtp('appended', True)}
+           'zip.vtp': vtp('appended', True), 'text.vtk': vtk(False), 'a.vtk': vtk(True),
+           'new.vtk': vtk(True, True), 'text.gii': gifti('ASCII'),
+           'binary.gii': gifti('Base64Binary'), 'a.gii': gifti('GZipBase64Binary')}
     return [(name, {name: data}, name) for name, data in one.items()]

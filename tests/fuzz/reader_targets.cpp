@@ -27,6 +27,9 @@ void check_mesh(const TriangleMesh& mesh) {
           "a face of a vertex that is not there");
   require(mesh.normals.empty() || mesh.normals.size() == mesh.xyz.size(),
           "normals of some vertices only");
+  for (const plc::tools::Scalars& scalars : mesh.scalars) {
+    require(scalars.values.size() == vertices, "values at some vertices only");
+  }
 }
 
 using Reader = TriangleMesh (*)(const std::string& path, std::string_view data);
@@ -39,6 +42,9 @@ void read_mesh(Reader reader, Bytes file) {
 
 }  // namespace
 
+void mesh_gifti(Bytes file) {
+  read_mesh(plc::tools::read_gifti, file);
+}
 void mesh_obj(Bytes file) {
   read_mesh(plc::tools::read_obj, file);
 }
@@ -50,6 +56,9 @@ void mesh_ply(Bytes file) {
 }
 void mesh_stl(Bytes file) {
   read_mesh(plc::tools::read_stl, file);
+}
+void mesh_vtk(Bytes file) {
+  read_mesh(plc::tools::read_vtk, file);
 }
 void mesh_vtp(Bytes file) {
   read_mesh(plc::tools::read_vtp, file);

@@ -39,11 +39,32 @@ void put_meshes(const Seeds& seeds) {
   for (const std::string name : {"plain", "normals", "scalars"}) {
     if (name == "normals") mesh.normals.assign(mesh.xyz.size(), 0.5F);
     if (name == "scalars") mesh.scalars = {{"Speed", std::vector<float>(mesh.xyz.size() / 3, 2)}};
-    for (const std::string format : {"obj", "off", "ply", "stl", "vtp"}) {
-      if (name == "scalars" && format != "ply" && format != "vtp") continue;
-      plc::tools::write_mesh(seeds.path("mesh_" + format, name + "." + format), mesh);
+    for (const std::string format : {"gii", "obj", "off", "ply", "stl", "vtk", "vtp"}) {
+      const std::string file = name + "." + format;
+      if (name == "scalars" && !plc::tools::holds_scalars(file)) continue;
+      plc::tools::write_mesh(seeds.path(format == "gii" ? "mesh_gifti" : "mesh_" + format, file),
+                             mesh);
     }
   }
+  seeds.put(
+      "mesh_gifti", "ascii.gii",
+      "<?xml version=\"1.0\"?><GIFTI><MetaData><MD><Name>SPACE</Name><Value>voxel</Value></MD>"
+      "</MetaData><DataArray Intent=\"NIFTI_INTENT_POINTSET\" DataType=\"NIFTI_TYPE_FLOAT32\" "
+      "ArrayIndexingOrder=\"ColumnMajorOrder\" Dim0=\"3\" Dim1=\"3\" Encoding=\"ASCII\"><Data>"
+      "0 1 0 0 0 1 0 0 0</Data></DataArray><DataArray Intent=\"NIFTI_INTENT_TRIANGLE\" "
+      "DataType=\"NIFTI_TYPE_INT32\" Dim0=\"1\" Dim1=\"3\" Encoding=\"Base64Binary\"><Data>"
+      "AAAAAAEAAAACAAAA</Data></DataArray></GIFTI>\n");
+  const std::string vtk =
+      "ASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 0.5\nMETADATA\nA 0\n\n";
+  const std::string values =
+      "POINT_DATA 4\nSCALARS Speed float 1\nLOOKUP_TABLE default\n1 2 3 4\nFIELD FieldData 1\n"
+      "Heat 1 4 double\n5 6 7 8\nNORMALS n float\n0 0 1 0 0 1 0 0 1 0 0 1\nCELL_DATA 1\n";
+  seeds.put("mesh_vtk", "old.vtk",
+            "# vtk DataFile Version 3.0\nSPACE=RAS\n" + vtk +
+                "POLYGONS 1 5\n4 0 1 2 3\nTRIANGLE_STRIPS 1 5\n4 0 1 2 3\n" + values);
+  seeds.put("mesh_vtk", "new.vtk",
+            "# vtk DataFile Version 5.1\n\n" + vtk +
+                "POLYGONS 2 4\nOFFSETS vtktypeint64\n0 4\nCONNECTIVITY vtktypeint64\n0 1 2 3\n");
   const std::string points = "v 0 0 0\nv 1 0 0 # c\nv 1 1 0 1.0\nv 0 1 0.5\nvn 0 0 1\n";
   seeds.put("mesh_obj", "corners.obj",
             points + "f 1/5 2/6 3/7 4/8\nf 1//1 2//1 3//1\nf -4 -3 -2 -1\nf 1/1/1 2/1/1 3/1/1\n");

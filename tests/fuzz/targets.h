@@ -23,10 +23,12 @@ void state(Bytes bytes);
 void evolution(Bytes bytes);
 
 // Readers of the tools: the bytes are a file.
+void mesh_gifti(Bytes file);
 void mesh_obj(Bytes file);
 void mesh_off(Bytes file);
 void mesh_ply(Bytes file);
 void mesh_stl(Bytes file);
+void mesh_vtk(Bytes file);
 void mesh_vtp(Bytes file);
 void inv3(Bytes file);
 void attach(Bytes file);
@@ -52,10 +54,12 @@ inline constexpr Target kTargets[] = {
     {"state", state},
     {"evolution", evolution},
 #ifdef PELLICLE_FUZZ_READERS
+    {"mesh_gifti", mesh_gifti},
     {"mesh_obj", mesh_obj},
     {"mesh_off", mesh_off},
     {"mesh_ply", mesh_ply},
     {"mesh_stl", mesh_stl},
+    {"mesh_vtk", mesh_vtk},
     {"mesh_vtp", mesh_vtp},
     {"inv3", inv3},
     {"attach", attach},

@@ -73,7 +73,7 @@ for suffix in nrrd mha; do
   full "phantom .$suffix" a.$suffix "$pellicle" phantom chain --size 24 -o out/a.$suffix
 done
 full "phantom .mhd" "a.mhd a.raw" "$pellicle" phantom chain --size 24 -o out/a.mhd
-for suffix in ply stl obj off vtp; do
+for suffix in ply stl obj off vtp vtk gii glb 3mf; do
   full "extract .$suffix" a.$suffix \
     "$pellicle" extract ball.nrrd --iso 0.5 --levels 0 --quiet -o out/a.$suffix
 done

@@ -42,6 +42,16 @@ if(TARGET pellicle_command)
   file(RELATIVE_PATH lib_from_bin /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
   set_target_properties(pellicle_command PROPERTIES INSTALL_RPATH "$ORIGIN/${lib_from_bin}")
   install(TARGETS pellicle_command DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT pellicle)
+  # The manual page is made by the command itself, of its options.
+  add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/pellicle.1
+    COMMAND pellicle_command --man > ${CMAKE_BINARY_DIR}/pellicle.1
+    DEPENDS pellicle_command)
+  add_custom_target(pellicle_manual ALL DEPENDS ${CMAKE_BINARY_DIR}/pellicle.1)
+  install(FILES ${CMAKE_BINARY_DIR}/pellicle.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
+    COMPONENT pellicle)
+  install(FILES tools/cmake/pellicle.bash
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME pellicle
+    COMPONENT pellicle)
   # Slicer starts a program, without a subcommand, and asks it for --xml.
   set(slicer_dir ${CMAKE_INSTALL_LIBDIR}/pellicle/cli-modules)
   file(RELATIVE_PATH bin_from_slicer /${slicer_dir} /${CMAKE_INSTALL_BINDIR})

@@ -119,9 +119,7 @@ plc_check check_of(plc_context* context, const TriangleMesh& mesh) {
 }
 
 void add_check_options(CLI::App& command, CheckOptions& options) {
-  command.add_option("MESH", options.mesh, ".stl, .ply, .obj, .off or .vtp")
-      ->required()
-      ->type_name("");
+  command.add_option("MESH", options.mesh, mesh_suffixes(false))->required()->type_name("");
   command.add_flag("--json", options.json, "JSON instead of a table");
 }
 

@@ -13,6 +13,7 @@
 #include "tools/command/engine_handles.h"
 #include "tools/command/extract_inputs.h"
 #include "tools/command/extract_job.h"
+#include "tools/command/kept_surface.h"
 #include "tools/command/mesh_precision.h"
 #include "tools/command/progress_line.h"
 #include "tools/command/report.h"
@@ -55,7 +56,7 @@ void on_log(plc_log_level level, const char* line, void*) {
 struct LevelFiles {
   plc_context* context;
   const std::string& output;
-  plc_space space;
+  const ExtractOptions& options;
   std::optional<Failure> failure;
 };
 
@@ -63,8 +64,8 @@ plc_verdict on_level(const plc_level_report* level, const plc_surface* surface, 
   auto& files = *static_cast<LevelFiles*>(user);
   try {
     const std::string path = named(files.output, "level" + std::to_string(level->level));
-    TriangleMesh mesh = mesh_of(files.context, surface, files.space);
-    settle_surface(files.context, mesh, files.space, path);
+    TriangleMesh mesh = placed_mesh(files.context, surface, files.options);
+    settle_surface(files.context, mesh, files.options.space, path);
     write_mesh(path, mesh);
   } catch (const Failure& failure) {
     files.failure = failure;
@@ -81,7 +82,7 @@ SurfaceHandle evolve(plc_context* context, const plc_image& image, const Extract
   plc_extras extras = inputs.extras();
   extras.progress = on_progress;
   extras.progress_user = &watch;
-  LevelFiles files{context, job.output, options.space, std::nullopt};
+  LevelFiles files{context, job.output, options, std::nullopt};
   if (options.each_level) {
     extras.level = on_level;
     extras.level_user = &files;
@@ -112,7 +113,9 @@ class Extraction {
     interrupt.end_at_once();
     volume_ = read_volume_apart(options.input, options.nifti_frame);
     print_warnings(volume_);
-    inputs_.emplace(options);
+    inputs_.emplace(options, volume_.image);
+    if (options.box) volume_ = cut_out(options.input, volume_, *options.box);
+    for (ExtractJob& job : jobs_) resolve(job, volume_.image);
     context_ = make_context(context_options());  // from here on there are threads
     read_ = now() - start_;
   }
@@ -166,12 +169,33 @@ class Extraction {
     told.init_file = jobs_[index - 1].output;
   }
 
+  // What the image has told, and what has been left out.
+  void add_choices(nlohmann::ordered_json& report, const ExtractJob& job,
+                   const KeptSurface& result) const {
+    if (!job.iso.text.empty() && !job.iso.is_number()) report["iso_from"] = job.iso.text;
+    if (result.bodies > 0) {
+      report["keep"] = {
+          {"asked", options_.keep.text}, {"kept", result.kept}, {"of", result.bodies}};
+    }
+    if (!options_.box) return;
+    const VoxelBox& box = *options_.box;
+    report["input"]["box"] = {box.low[0],  box.high[0], box.low[1],
+                              box.high[1], box.low[2],  box.high[2]};
+    if (options_.space != PLC_SPACE_VOXEL) return;
+    for (auto& site : report["sites"]) {
+      for (size_t k = 0; k < 3; ++k) {
+        site["place"][k] = site["place"][k].get<double>() + static_cast<double>(box.low[k]);
+      }
+    }
+  }
+
   // What is written from here on is whole; a signal waits for it.
   void write(const ExtractJob& job, const TraceFile& trace, const ExtractOptions& told) {
     interrupt_.only_note();
     const double written = now();
-    const plc_measures measures = measures_of(context_.get(), surface_.get());
-    TriangleMesh mesh = mesh_of(context_.get(), surface_.get(), options_.space);
+    KeptSurface result = kept_surface(context_.get(), surface_.get(), options_);
+    const plc_measures& measures = result.measures;
+    TriangleMesh& mesh = result.mesh;
     // The engine's promise is about its own mesh space; this one is rounded to another.
     settle_surface(context_.get(), mesh, options_.space, job.output);
     doubles_ = mesh.doubles;
@@ -182,9 +206,16 @@ class Extraction {
       auto report =
           make_report(context_.get(), volume_.image, surface_.get(), measures, timings, told);
       report["coordinates"] = precision_text(doubles_);
+      add_choices(report, job, result);
       write_report(job.report, report);
     }
     if (options_.progress != Progress::kNone) {
+      if (!job.iso.text.empty() && !job.iso.is_number()) {
+        std::printf("iso      %.6g (%s)\n", job.parameters.iso, job.iso.text.c_str());
+      }
+      if (result.bodies > 0) {
+        std::printf("kept     %zu of %zu bodies\n", result.kept, result.bodies);
+      }
       std::fputs(
           summary(context_.get(), volume_.image, surface_.get(), measures, timings, job.output)
               .c_str(),

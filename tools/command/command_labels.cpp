@@ -346,10 +346,28 @@ void add_label_options(CLI::App& command, ExtractOptions& options) {
           ->type_name("FILE")
           ->group("Files");
   command.get_option("INPUT")->required(false);
-  for (const char* other :
-       {"--iso", "--inside", "--level-iso", "--window", "--pad", "--feature", "--sigma", "--levels",
-        "--reduction", "--init", "--attach", "--structure", "--force", "--gradient",
-        "--gradient-tangent", "--gradient-bound", "--no-late-bubbles", "--trace", "--each-level"}) {
+  for (const char* other : {"--iso",
+                            "--inside",
+                            "--level-iso",
+                            "--window",
+                            "--pad",
+                            "--feature",
+                            "--sigma",
+                            "--levels",
+                            "--reduction",
+                            "--init",
+                            "--attach",
+                            "--structure",
+                            "--force",
+                            "--gradient",
+                            "--gradient-tangent",
+                            "--gradient-bound",
+                            "--no-late-bubbles",
+                            "--trace",
+                            "--each-level",
+                            "--box",
+                            "--keep",
+                            "--quality"}) {
     labels->excludes(command.get_option(other));
   }
   labels->excludes(command.get_option("INPUT"));

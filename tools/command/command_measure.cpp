@@ -11,6 +11,7 @@
 #include "tools/command/engine_handles.h"
 #include "tools/command/measure_report.h"
 #include "tools/command/mesh_precision.h"
+#include "tools/command/mesh_spaces.h"
 #include "tools/command/option_values.h"
 #include "tools/command/report.h"
 #include "tools/file/failure.h"
@@ -41,6 +42,7 @@ void add_scalars(TriangleMesh& mesh, const std::string& name, const std::vector<
   for (const double value : values) {
     scalars.values.push_back(static_cast<float>(std::isfinite(value) ? value : kNan));
   }
+  std::erase_if(mesh.scalars, [&](const Scalars& s) { return s.name == name; });  // of the file
   mesh.scalars.push_back(std::move(scalars));
 }
 
@@ -121,7 +123,10 @@ plc_distances distances(plc_context* context, const TriangleMesh& from, const Tr
 
 DistanceSummary measure_distance(plc_context* context, TriangleMesh& mesh,
                                  const MeasureOptions& options) {
-  const TriangleMesh other = read_mesh(options.other);
+  TriangleMesh other = read_mesh(options.other);
+  if (const auto space = space_named(mesh.space)) {
+    bring_to(other, *space, *space, nullptr, options.other);
+  }
   if (mesh.abc.empty()) throw Failure{options.mesh + ": has no faces"};
   if (other.abc.empty()) throw Failure{options.other + ": has no faces"};
   std::vector<double> distance(mesh.xyz.size() / 3);
@@ -166,7 +171,7 @@ void check_outputs(const MeasureOptions& options) {
 }  // namespace
 
 void add_measure_options(CLI::App& command, MeasureOptions& options) {
-  command.add_option("MESH", options.mesh, ".stl, .ply, .obj, .off or .vtp, in mm")
+  command.add_option("MESH", options.mesh, mesh_suffixes(false) + ", in mm")
       ->required()
       ->type_name("");
   const auto text = [&](const std::string& name, const std::string& type,
@@ -196,7 +201,7 @@ void add_measure_options(CLI::App& command, MeasureOptions& options) {
   command
       .add_option("-o,--output", options.output,
                   "Mesh with MeanCurvature, GaussianCurvature, Geodesic and Distance at its "
-                  "vertices, NaN where there is none; .vtp or .ply")
+                  "vertices, NaN where there is none; .vtp, .ply, .vtk, .gii or .glb")
       ->type_name("FILE");
   command.add_option("--json", options.json, "All numbers as JSON")->type_name("FILE");
 }

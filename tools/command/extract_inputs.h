@@ -10,14 +10,17 @@ namespace plc::tools {
 // Owns what plc_extras borrow.
 class ExtractInputs {
  public:
-  // Reads the files; throws Failure.
-  explicit ExtractInputs(const ExtractOptions& options);
+  // Reads the files; throws Failure. Mask and coordinates in voxels are those of the whole image,
+  // of which the box, where there is one, is cut out.
+  ExtractInputs(const ExtractOptions& options, const plc_image& image);
   // For a start from another mesh, in `space`.
   void start_from(TriangleMesh mesh) { mesh_ = std::move(mesh); }
   // Everything but callbacks. Valid as long as this lives and is not changed.
   plc_extras extras() const;
 
  private:
+  void move_to(const VoxelBox& box);
+
   plc_space space_;
   std::vector<plc_seed> seeds_;
   AttachFile attach_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <string_view>
 
 #include "tools/file/failure.h"
 
@@ -10,9 +11,13 @@ namespace plc::tools {
 namespace {
 
 ExtractJob job_of(const ExtractOptions& options, const plc_parameters& parameters,
-                  const std::string& name) {
-  return {parameters, named(options.output, name), named(options.report, name),
-          named(options.trace, name), false};
+                  const IsoChoice& iso, const std::string& name) {
+  return {parameters,
+          iso,
+          named(options.output, name),
+          named(options.report, name),
+          named(options.trace, name),
+          false};
 }
 
 template <typename T>
@@ -56,7 +61,8 @@ void check_paths(const std::vector<ExtractJob>& jobs) {
 std::string named(const std::string& path, const std::string& name) {
   if (path.empty() || name.empty()) return path;
   const size_t slash = path.find_last_of('/');
-  const size_t dot = path.find_last_of('.');
+  constexpr std::string_view kSurface = ".surf.gii";  // by custom of neuroimaging
+  const size_t dot = path.ends_with(kSurface) ? path.size() - kSurface.size() : path.rfind('.');
   const bool has_suffix = dot != std::string::npos && (slash == std::string::npos || dot > slash);
   const size_t end = has_suffix ? dot : path.size();
   return path.substr(0, end) + "-" + name + path.substr(end);
@@ -66,20 +72,29 @@ std::vector<ExtractJob> jobs_of(const ExtractOptions& options) {
   std::vector<ExtractJob> jobs;
   if (!options.structures.empty()) {
     for (const Structure& s : options.structures) {
-      jobs.push_back(job_of(options, s.parameters, s.name));
+      jobs.push_back(job_of(options, s.parameters, s.iso, s.name));
     }
   } else if (options.isos.size() > 1) {
-    for (const double iso : options.isos) {
-      plc_parameters parameters = options.parameters;
-      parameters.iso = iso;
-      jobs.push_back(job_of(options, parameters, text_of(iso)));
+    for (const IsoChoice& iso : options.isos) {
+      const std::string name = iso.is_number() ? text_of(iso.number) : iso.text;
+      jobs.push_back(job_of(options, options.parameters, iso, name));
       jobs.back().follows = jobs.size() > 1;
     }
   } else {
-    jobs.push_back(job_of(options, options.parameters, ""));
+    const IsoChoice iso = options.isos.empty() ? IsoChoice{} : options.isos[0];
+    jobs.push_back(job_of(options, options.parameters, iso, ""));
   }
   check_paths(jobs);
   return jobs;
+}
+
+void resolve(ExtractJob& job, const plc_image& image) {
+  if (job.iso.text.empty()) return;
+  if (!job.iso.is_number() && job.parameters.feature != PLC_FEATURE_NONE) {
+    throw Failure{"--iso " + job.iso.text +
+                  ": is of the image itself; with --feature gradient-norm a number is needed"};
+  }
+  job.parameters.iso = resolved(job.iso, image);
 }
 
 bool nearer(const plc_image& image, double from, double to, bool inside_below) {

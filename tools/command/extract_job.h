@@ -8,7 +8,8 @@
 namespace plc::tools {
 
 struct ExtractJob {
-  plc_parameters parameters;
+  plc_parameters parameters;  // iso: once resolve() has been called
+  IsoChoice iso;              // "": none
   std::string output;
   std::string report;    // "": none
   std::string trace;     // "": none
@@ -17,6 +18,9 @@ struct ExtractJob {
 
 // head.ply becomes head-NAME.ply where there are several.
 std::string named(const std::string& path, const std::string& name);
+
+// Puts the value of the job's iso among its parameters. Throws Failure.
+void resolve(ExtractJob& job, const plc_image& image);
 
 // In the order in which they run. Throws Failure where two would write the same file.
 std::vector<ExtractJob> jobs_of(const ExtractOptions& options);

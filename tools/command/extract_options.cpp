@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 
 namespace plc::tools {
 
@@ -36,6 +37,20 @@ std::string names_of(const Choices<T>& choices) {
     names += (names.empty() ? "" : "|") + std::string(choice.first);
   return names;
 }
+
+// What --quality sets: see tools/README.md for what each costs.
+using Preset = void (*)(plc_parameters& p);
+
+void draft(plc_parameters& p) {
+  constexpr double kSoonCalm = 1e-4;  // ten times the default
+  p.late_bubbles = 0;
+  p.epsilon = kSoonCalm;
+}
+void normal(plc_parameters&) {}
+void fine(plc_parameters& p) {
+  p.mesh = PLC_MESH_ADAPTIVE;
+}
+const Choices<Preset> kQualities = {{"draft", draft}, {"normal", normal}, {"fine", fine}};
 
 void read_edge_range(const std::string& text, plc_parameters& p) {
   const auto v = to_numbers("--edge-range", text, 2);
@@ -129,7 +144,7 @@ class Declarations {
         ->required()
         ->type_name("");
     file("-o,--output", options_.output,
-         "Mesh to write, by suffix: .stl .ply (binary), .obj, .off, .vtp")
+         "Mesh to write, by suffix: .stl .ply (binary), .obj, .off, .vtp, .vtk, .gii, .glb, .3mf")
         ->required();
     choice("--space", kSpaces, options_.space,
            "Coordinates of the mesh: patient space in mm (lps: x to the left, y to the back, z to "
@@ -154,15 +169,28 @@ class Declarations {
         ->excludes(quiet);
   }
 
+  // Before the options that it sets: what is told of them, too, goes on top of it.
+  void quality() {
+    group_ = "Mesh";
+    text("--quality", "draft|normal|fine", "normal",
+         "Preset, on top of which the other options go: draft, a first look (--no-late-bubbles "
+         "--epsilon 1e-4: parts beside the one the bubble meets are missing); normal, the "
+         "defaults; fine, thin parts whole (--mesh adaptive)",
+         [&p = p_](const std::string& s) { to_choice("--quality", s, kQualities)(p); });
+  }
+
   void object() {
     group_ = "Object";
     text("--iso", "VALUE[,VALUE...]", "",
          "Value of the surface, in the image's units. Several: one surface each, in this order, "
          "NAME-VALUE.SUFFIX; each starts from the last one on the full image where that is nearer "
-         "than a bubble",
+         "than a bubble. otsu: Otsu's threshold of the image, or of its --box; p95: the value that "
+         "95 % of its voxels do not exceed",
          [&o = options_](const std::string& s) {
-           o.isos = to_numbers("--iso", s, 0);
-           o.parameters.iso = o.isos[0];
+           o.isos = to_iso_choices("--iso", s);
+           const IsoChoice& first = o.isos[0];
+           o.parameters.iso =
+               first.is_number() ? first.number : std::numeric_limits<double>::quiet_NaN();
          });
     choice("--inside", kInsides, p_.inside_below,
            "The object is where the image is above (a bright object) or below iso");
@@ -182,6 +210,22 @@ class Declarations {
            "Value that surrounds the image, so that objects cut by its border come out closed, in "
            "the image's units, not on the object's side of --iso; by default the outside end of "
            "the window");
+  }
+
+  // Of the image and the result, not of one structure.
+  void region() {
+    group_ = "Object";
+    text("--box", "X0,X1,Y0,Y1,Z0,Z1", "",
+         "Region of the image, in voxel indices, both ends within: all else is left out as if the "
+         "image ended there, and the surface is closed at its border",
+         [&o = options_](const std::string& s) {
+           const auto v = to_integers("--box", s, 6);
+           o.box = VoxelBox{{v[0], v[2], v[4]}, {v[1], v[3], v[5]}};
+         });
+    text("--keep", kKeepType, "all",
+         "Bodies to write, with the cavities in them: the largest, the N largest, or all of at "
+         "least this volume, as in 500mm3",
+         [&o = options_](const std::string& s) { o.keep = to_keep_rule("--keep", s); });
   }
 
   void feature() {
@@ -366,7 +410,9 @@ std::string init_text(const ExtractOptions& o) {
 void add_extract_options(CLI::App& command, ExtractOptions& options) {
   Declarations declare(command, options);
   declare.files();
+  declare.quality();
   declare.object();
+  declare.region();
   declare.feature();
   declare.pyramid();
   declare.model();
@@ -387,6 +433,9 @@ void add_extract_options(CLI::App& command, ExtractOptions& options) {
 }
 
 void read_structures(ExtractOptions& options) {
+  if (!options.structure_texts.empty() && options.isos.size() > 1) {
+    throw CLI::ValidationError("--structure", "not together with several values of --iso");
+  }
   for (const std::string& text : options.structure_texts) {
     const size_t equals = text.find('=');
     if (equals == 0 || equals == std::string::npos || text.find('/') < equals) {
@@ -395,6 +444,7 @@ void read_structures(ExtractOptions& options) {
     ExtractOptions own = options;
     CLI::App app;
     Declarations declare(app, own);
+    declare.quality();
     declare.object();
     declare.feature();
     declare.pyramid();
@@ -405,17 +455,13 @@ void read_structures(ExtractOptions& options) {
     } catch (const CLI::ParseError& e) {
       throw CLI::ValidationError("--structure " + name, e.what());
     }
-    if (own.isos.size() > 1 && own.isos != options.isos) {
-      refuse_value("--structure", text, "one iso-value");
-    }
+    if (own.isos.size() > 1) refuse_value("--structure", text, "one iso-value");
     if (own.attach != options.attach || own.init_file != options.init_file ||
         own.seeds.size() != options.seeds.size()) {
       refuse_value("--structure", text, "seeds, files of --init and --attach outside of it");
     }
-    options.structures.push_back({name, own.parameters});
-  }
-  if (!options.structures.empty() && options.isos.size() > 1) {
-    throw CLI::ValidationError("--structure", "not together with several values of --iso");
+    options.structures.push_back(
+        {name, own.parameters, own.isos.empty() ? IsoChoice{} : own.isos[0]});
   }
 }
 

@@ -1,13 +1,17 @@
 // What `pellicle extract` is told on the command line.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/pellicle.h"
+#include "tools/command/iso_choice.h"
+#include "tools/command/keep_rule.h"
 #include "tools/command/option_values.h"
 #include "tools/command/progress_line.h"
 #include "tools/volume/nifti_frame.h"
+#include "tools/volume/volume_box.h"
 
 namespace plc::tools {
 
@@ -15,6 +19,7 @@ namespace plc::tools {
 struct Structure {
   std::string name;
   plc_parameters parameters;
+  IsoChoice iso;  // "": none
 };
 
 struct ExtractOptions {
@@ -26,7 +31,9 @@ struct ExtractOptions {
   std::string attach;     // "": none
   std::string init_file;  // of --init mesh= and mask=
   std::vector<plc_seed> seeds;
-  std::vector<double> isos;  // as given; the first is parameters.iso
+  std::vector<IsoChoice> isos;  // as given; the first is parameters.iso where it is a number
+  std::optional<VoxelBox> box;
+  KeepRule keep;
   std::vector<std::string> structure_texts;
   std::vector<Structure> structures;  // by read_structures()
   plc_parameters parameters;

@@ -17,11 +17,14 @@
 #include "engine/pellicle.h"
 #include "tools/command/command_check.h"
 #include "tools/command/command_extract.h"
+#include "tools/command/command_info.h"
 #include "tools/command/command_labels.h"
 #include "tools/command/command_measure.h"
+#include "tools/command/command_mesh.h"
 #include "tools/command/command_phantom.h"
 #include "tools/command/command_render.h"
 #include "tools/command/interrupt.h"
+#include "tools/command/manual_page.h"
 #include "tools/command/option_values.h"
 #include "tools/command/slicer_description.h"
 #include "tools/file/failure.h"
@@ -59,21 +62,26 @@ class Command {
  public:
   explicit Command(InterruptGuard& interrupt) : interrupt_(interrupt) {
     app_.set_version_flag("--version", plc_version_string());
+    add_manual_option(app_);
     app_.require_subcommand(1);
     app_.get_formatter()->column_width(kHelpColumn);
     extract_ = add("extract", "Extract a closed surface from a volume");
+    info_ = add("info", "Tell what an image or a mesh is");
     check_ = add("check", "Tell what a mesh is and whether it is a valid closed surface");
     measure_ = add("measure", "Measure a mesh: volumes, moments, curvatures, geodesics, distances");
+    mesh_ = add("mesh", "Convert a mesh, keep parts of it, merge several");
     phantom_ = add("phantom", "Write a synthetic test volume");
     render_ = add("render", "Draw a shaded picture of a mesh");
     add_extract_options(*extract_, extract_options_);
     add_label_options(*extract_, extract_options_);
     add_slicer_option(*extract_);
+    add_info_options(*info_, info_options_);
     add_check_options(*check_, check_options_);
     add_measure_options(*measure_, measure_options_);
+    add_mesh_options(*mesh_, mesh_options_);
     add_phantom_options(*phantom_, phantom_arguments_);
     add_render_options(*render_, render_options_);
-    for (CLI::App* command : {extract_, check_, measure_, phantom_, render_}) {
+    for (CLI::App* command : {extract_, info_, check_, measure_, mesh_, phantom_, render_}) {
       demand_file_names(*command);
     }
   }
@@ -91,13 +99,16 @@ class Command {
     } catch (const CLI::ParseError& e) {
       const auto unknown = app_.remaining();
       if (app_.get_subcommands().empty() && !unknown.empty()) {
-        return fail(unknown[0] + ": unknown command; extract, check, measure, phantom or render");
+        return fail(unknown[0] +
+                    ": unknown command; extract, info, check, measure, mesh, phantom or render");
       }
       return fail(e.what());
     }
     if (extract_->parsed()) return run_extract(extract_options_, interrupt_);
+    if (info_->parsed()) return run_info(info_options_);
     if (check_->parsed()) return run_check(check_options_);
     if (measure_->parsed()) return run_measure(measure_options_);
+    if (mesh_->parsed()) return run_mesh(mesh_options_);
     if (phantom_->parsed()) return run_phantom(phantom_arguments_);
     return run_render(render_options_);
   }
@@ -111,13 +122,17 @@ class Command {
   CLI::App app_{"Closed, oriented, intersection-free triangulated surfaces from 3D images",
                 "pellicle"};
   CLI::App* extract_ = nullptr;
+  CLI::App* info_ = nullptr;
   CLI::App* check_ = nullptr;
   CLI::App* measure_ = nullptr;
+  CLI::App* mesh_ = nullptr;
   CLI::App* phantom_ = nullptr;
   CLI::App* render_ = nullptr;
   ExtractOptions extract_options_;
+  InfoOptions info_options_;
   CheckOptions check_options_;
   MeasureOptions measure_options_;
+  MeshOptions mesh_options_;
   PhantomArguments phantom_arguments_;
   RenderOptions render_options_;
 };

@@ -110,11 +110,13 @@ Json sites_json(plc_context* context, const plc_surface* surface, plc_space spac
   return sites;
 }
 
-Json input_json(plc_context* context, const plc_image& image, const plc_surface* surface) {
+Json input_json(plc_context* context, const plc_image& image, const plc_surface* surface,
+                const ExtractOptions& options) {
   double low = 0;
   double high = 0;
   demand(context, plc_surface_input_range(context, surface, &low, &high));
-  return {{"dims", image.dims},
+  return {{"file", options.labels.empty() ? options.input : options.labels},
+          {"dims", image.dims},
           {"spacing", image.spacing},
           {"origin", image.origin},
           {"direction", image.direction},
@@ -174,7 +176,7 @@ Json make_report(plc_context* context, const plc_image& image, const plc_surface
     levels.push_back(level_json(level_of(context, surface, i)));
   }
   return {{"pellicle", plc_version_string()},
-          {"input", input_json(context, image, surface)},
+          {"input", input_json(context, image, surface, options)},
           {"parameters", parameters_json(parameters, options)},
           {"levels", levels},
           {"surface", surface_json(measures)},

@@ -13,10 +13,11 @@ namespace plc::tools {
 namespace {
 
 // Slicer makes nodes of its scene from one output, in LPS, and tells its user the rest itself. It
-// hands images on as NRRD.
-const std::set<std::string> kLeftOut = {"--help",      "--xml",    "--space",      "--report",
-                                        "--trace",     "--quiet",  "--each-level", "--attach",
-                                        "--structure", "--labels", "--nifti-frame"};
+// hands images on as NRRD. It passes on every choice and number, so that nothing would be left of
+// what --quality sets.
+const std::set<std::string> kLeftOut = {"--help",      "--xml",    "--space",       "--report",
+                                        "--trace",     "--quiet",  "--each-level",  "--attach",
+                                        "--structure", "--labels", "--nifti-frame", "--quality"};
 // Where what is shown first lies.
 const std::set<std::string> kBasic = {"Files", "Object"};
 

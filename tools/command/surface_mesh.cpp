@@ -1,11 +1,13 @@
 #include "tools/command/surface_mesh.h"
 
 #include "tools/command/engine_handles.h"
+#include "tools/command/mesh_spaces.h"
 
 namespace plc::tools {
 
 TriangleMesh mesh_of(plc_context* context, const plc_surface* surface, plc_space space) {
   TriangleMesh mesh;
+  mesh.space = space_name(space);
   const int64_t vertices = plc_surface_vertex_count(surface);
   const int64_t faces = plc_surface_face_count(surface);
   mesh.xyz.resize(3 * static_cast<size_t>(vertices));

@@ -22,6 +22,8 @@ class TextReader {
   bool at_end() { return !skip_space(true); }
   bool at_end_of_line() { return !skip_space(false); }
   void skip_line();
+  // Bytes, not more than remain, that are no text.
+  void skip(size_t bytes) { next_ += bytes; }
   std::string_view word();
   double real() { return to_real(word()); }
   int64_t integer() { return to_integer(word()); }

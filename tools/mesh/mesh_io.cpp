@@ -1,6 +1,8 @@
 #include "tools/mesh/mesh_io.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -19,28 +21,47 @@ namespace {
 
 struct Format {
   const char* suffix;
-  TriangleMesh (*read)(const std::string& path, std::string_view data);
+  TriangleMesh (*read)(const std::string& path, std::string_view data);  // null: it is not read
   void (*write)(AtomicFile& file, const TriangleMesh& mesh);
   bool has_scalars;
+  bool has_doubles;
 };
 
-const Format& format_of(const std::string& path) {
-  static constexpr Format kFormats[] = {{".stl", read_stl, write_stl, false},
-                                        {".ply", read_ply, write_ply, true},
-                                        {".obj", read_obj, write_obj, false},
-                                        {".off", read_off, write_off, false},
-                                        {".vtp", read_vtp, write_vtp, true}};
+constexpr std::array<Format, 9> kFormats = {{{".stl", read_stl, write_stl, false, true},
+                                             {".ply", read_ply, write_ply, true, true},
+                                             {".obj", read_obj, write_obj, false, true},
+                                             {".off", read_off, write_off, false, true},
+                                             {".vtp", read_vtp, write_vtp, true, true},
+                                             {".vtk", read_vtk, write_vtk, true, true},
+                                             {".gii", read_gifti, write_gifti, true, false},
+                                             {".glb", nullptr, write_glb, true, false},
+                                             {".3mf", nullptr, write_3mf, false, true}}};
+
+// Null where there is none of that suffix.
+const Format* find_format(const std::string& path) {
   const std::string suffix = path_suffix(path);
-  for (const Format& format : kFormats) {
-    if (suffix == format.suffix) return format;
+  const auto* const found = std::find_if(kFormats.begin(), kFormats.end(),
+                                         [&](const Format& f) { return suffix == f.suffix; });
+  return found == kFormats.end() ? nullptr : found;
+}
+
+const Format& format_of(const std::string& path, bool written) {
+  const Format* format = find_format(path);
+  if (format == nullptr) {
+    throw Failure{path + ": unknown format of meshes (known are " + mesh_suffixes(written) + ")"};
   }
-  throw Failure{path + ": unknown format of meshes (known are .stl, .ply, .obj, .off and .vtp)"};
+  if (!written && format->read == nullptr) {
+    throw Failure{path + ": " + format->suffix + " is written only (read are " +
+                  mesh_suffixes(false) + ")"};
+  }
+  return *format;
 }
 
 const Format& format_for(const std::string& path, bool with_scalars) {
-  const Format& format = format_of(path);
+  const Format& format = format_of(path, true);
   if (with_scalars && !format.has_scalars) {
-    throw Failure{path + ": this format has no values at vertices (.ply and .vtp have)"};
+    throw Failure{path +
+                  ": this format has no values at vertices (.ply, .vtp, .vtk, .gii and .glb have)"};
   }
   return format;
 }
@@ -67,6 +88,12 @@ std::string contents(const std::string& path) {
 void MeshBuilder::normal(double x, double y, double z) {
   mesh_.normals.insert(mesh_.normals.end(),
                        {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
+}
+
+void MeshBuilder::scalars(std::string name, std::vector<float> values) {
+  const bool taken = std::any_of(mesh_.scalars.begin(), mesh_.scalars.end(),
+                                 [&](const Scalars& s) { return s.name == name; });
+  if (is_scalar_name(name) && !taken) mesh_.scalars.push_back({std::move(name), std::move(values)});
 }
 
 uint32_t MeshBuilder::index(int64_t corner) const {
@@ -99,11 +126,12 @@ TriangleMesh MeshBuilder::finish() {
                   std::to_string(mesh_.abc[i]) + " of " + std::to_string(count)};
   }
   if (mesh_.normals.size() != mesh_.xyz.size()) mesh_.normals.clear();
+  std::erase_if(mesh_.scalars, [&](const Scalars& s) { return s.values.size() != count; });
   return std::move(mesh_);
 }
 
 TriangleMesh read_mesh(const std::string& path) {
-  const Format& format = format_of(path);
+  const Format& format = format_of(path, false);
   const std::string data = contents(path);
   if (data.empty()) throw Failure{path + ": is empty"};
   try {
@@ -113,6 +141,44 @@ TriangleMesh read_mesh(const std::string& path) {
   } catch (const std::length_error&) {  // of a string or vector longer than any memory
     throw Failure{path + ": not enough memory to read it"};
   }
+}
+
+std::string space_comment(const TriangleMesh& mesh) {
+  return mesh.space.empty() ? "" : "SPACE=" + mesh.space;
+}
+
+std::string space_in(std::string_view comment) {
+  for (const char* name : {space_names::kLps, space_names::kRas, space_names::kVoxel}) {
+    if (comment.find(std::string("SPACE=") + name) != std::string_view::npos) return name;
+  }
+  return {};
+}
+
+bool is_scalar_name(std::string_view name) {
+  constexpr size_t kLongest = 64;
+  return !name.empty() && name.size() <= kLongest &&
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0; });
+}
+
+bool is_mesh_path(const std::string& path) {
+  return find_format(path) != nullptr;
+}
+
+bool holds_scalars(const std::string& path) {
+  const Format* format = find_format(path);
+  return format != nullptr && format->has_scalars;
+}
+
+std::string mesh_suffixes(bool written) {
+  std::string names;
+  std::string last;
+  for (const Format& format : kFormats) {
+    if (!written && format.read == nullptr) continue;
+    if (!last.empty()) names += (names.empty() ? "" : ", ") + last;
+    last = format.suffix;
+  }
+  return names + " and " + last;
 }
 
 void check_mesh_path(const std::string& path, bool with_scalars) {
@@ -128,6 +194,10 @@ void write_mesh(const std::string& path, const TriangleMesh& mesh) {
 
 void write_mesh(const std::string& path, const TriangleMesh& mesh, AtomicFiles& files) {
   const Format& format = format_for(path, !mesh.scalars.empty());
+  if (mesh.doubles && !format.has_doubles) {
+    throw Failure{path + ": not written: this format has no doubles, and rounded to floats faces " +
+                  "would meet; .ply and .vtp have, or --space voxel may hold the surface"};
+  }
   format.write(files.add(path), mesh);
 }
 

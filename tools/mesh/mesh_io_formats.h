@@ -10,17 +10,29 @@
 
 namespace plc::tools {
 
+TriangleMesh read_gifti(const std::string& path, std::string_view data);
 TriangleMesh read_obj(const std::string& path, std::string_view data);
 TriangleMesh read_off(const std::string& path, std::string_view data);
 TriangleMesh read_ply(const std::string& path, std::string_view data);
 TriangleMesh read_stl(const std::string& path, std::string_view data);
+TriangleMesh read_vtk(const std::string& path, std::string_view data);
 TriangleMesh read_vtp(const std::string& path, std::string_view data);
 
+void write_3mf(AtomicFile& file, const TriangleMesh& mesh);
+void write_gifti(AtomicFile& file, const TriangleMesh& mesh);
+void write_glb(AtomicFile& file, const TriangleMesh& mesh);
 void write_obj(AtomicFile& file, const TriangleMesh& mesh);
 void write_off(AtomicFile& file, const TriangleMesh& mesh);
 void write_ply(AtomicFile& file, const TriangleMesh& mesh);
 void write_stl(AtomicFile& file, const TriangleMesh& mesh);
+void write_vtk(AtomicFile& file, const TriangleMesh& mesh);
 void write_vtp(AtomicFile& file, const TriangleMesh& mesh);
+
+// "SPACE=LPS", or "" where the mesh is of no known space; and the space that a comment names so.
+std::string space_comment(const TriangleMesh& mesh);
+std::string space_in(std::string_view comment);
+// What a file may call values at vertices that are to be kept.
+bool is_scalar_name(std::string_view name);
 
 // Collects what a reader finds.
 class MeshBuilder {
@@ -30,10 +42,13 @@ class MeshBuilder {
   size_t vertex_count() const { return mesh_.xyz.size() / 3; }
   void vertex(double x, double y, double z) { mesh_.xyz.insert(mesh_.xyz.end(), {x, y, z}); }
   void normal(double x, double y, double z);
+  void space(std::string name) { mesh_.space = std::move(name); }
+  // Kept where there is one value per vertex, and the name is one and not yet taken.
+  void scalars(std::string name, std::vector<float> values);
   // A fan around the first corner. Failure below 3 corners or where an index is no uint32.
   void polygon(std::span<const int64_t> corners);
   void triangle(int64_t a, int64_t b, int64_t c);
-  // Checks every index; keeps the normals where there is one per vertex.
+  // Checks every index; keeps the normals and values of which there is one per vertex.
   TriangleMesh finish();
 
  private:

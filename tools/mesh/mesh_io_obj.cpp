@@ -1,4 +1,5 @@
 // Wavefront OBJ: v, vn and f; everything else is passed over.
+#include <algorithm>
 #include <vector>
 
 #include "tools/file/text.h"
@@ -14,6 +15,17 @@ int64_t resolved(const TextReader& text, int64_t index, size_t count) {
   return from_zero;
 }
 
+// As the comments before the first element name it.
+std::string space_of_comments(std::string_view data) {
+  while (!data.empty() && data.front() == '#') {
+    const size_t end = std::min(data.find('\n'), data.size() - 1);
+    std::string space = space_in(data.substr(0, end));
+    if (!space.empty()) return space;
+    data.remove_prefix(end + 1);
+  }
+  return {};
+}
+
 }  // namespace
 
 TriangleMesh read_obj(const std::string& path, std::string_view data) {
@@ -22,6 +34,7 @@ TriangleMesh read_obj(const std::string& path, std::string_view data) {
   std::vector<double> normals;
   bool normals_match = true;  // each corner has the normal of its vertex's number
   std::vector<int64_t> corners;
+  mesh.space(space_of_comments(data));
   while (!text.at_end()) {
     const std::string_view key = text.word();
     if (key == "v") {
@@ -61,6 +74,7 @@ TriangleMesh read_obj(const std::string& path, std::string_view data) {
 void write_obj(AtomicFile& file, const TriangleMesh& mesh) {
   const bool with_normals = mesh.normals.size() == mesh.xyz.size();
   std::string out = "# Pellicle\n";
+  if (!mesh.space.empty()) out += "# " + space_comment(mesh) + "\n";
   for (size_t i = 0; i < mesh.xyz.size(); ++i) {
     if (i % 3 == 0) out += "v ";
     put_real(out, mesh.xyz[i], mesh.doubles);

@@ -62,7 +62,8 @@ struct Element {
 struct Header {
   Encoding encoding = Encoding::kAscii;
   std::vector<Element> elements;
-  size_t size = 0;  // bytes
+  std::string space;  // as a comment names it
+  size_t size = 0;    // bytes
   int lines = 0;
 };
 
@@ -116,7 +117,11 @@ Header read_header(const std::string& path, std::string_view data) {
     } else if (key == "property") {
       if (header.elements.empty()) text.fail("a property of no element");
       header.elements.back().properties.push_back(read_property(text));
-    } else if (key != "comment" && key != "obj_info") {
+    } else if (key == "comment") {
+      const std::string_view rest = data.substr(text.position());
+      const std::string space = space_in(rest.substr(0, rest.find('\n')));
+      if (!space.empty()) header.space = space;
+    } else if (key != "obj_info") {
       text.fail("unknown keyword \"" + std::string(key.substr(0, 40)) + "\"");
     }
     text.skip_line();
@@ -206,6 +211,7 @@ class PlyReader {
       }
     }
     if (!has_vertices) throw Failure{path_ + ": has no vertices"};
+    mesh_.space(header_.space);
     return mesh_.finish();
   }
 
@@ -225,21 +231,29 @@ class PlyReader {
     static constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
     double slots[7] = {};  // the last takes what is not asked for
     std::vector<double*> target;
+    std::vector<std::vector<float>> values(element.properties.size());
+    std::vector<char> is_value;
     int found = 0;
     for (const Property& property : element.properties) {
       if (property.count) throw Failure{path_ + ": has lists at its vertices"};
       const auto* const name = std::find(std::begin(kNames), std::end(kNames), property.name);
       target.push_back(slots + (name - std::begin(kNames)));
       if (name != std::end(kNames)) found |= 1 << (name - std::begin(kNames));
+      // Not the bytes of colours.
+      is_value.push_back(name == std::end(kNames) && scalar_size(property.scalar) >= 4 ? 1 : 0);
     }
     if ((found & 7) != 7) throw Failure{path_ + ": its vertices have no x, y and z"};
     const bool with_normals = found == 63;
     for (int64_t i = 0; i < element.count; ++i) {
       for (size_t k = 0; k < target.size(); ++k) {
         *target[k] = values_.next(element.properties[k].scalar);
+        if (is_value[k] != 0) values[k].push_back(static_cast<float>(*target[k]));
       }
       mesh_.vertex(slots[0], slots[1], slots[2]);
       if (with_normals) mesh_.normal(slots[3], slots[4], slots[5]);
+    }
+    for (size_t k = 0; k < values.size(); ++k) {
+      if (is_value[k] != 0) mesh_.scalars(element.properties[k].name, std::move(values[k]));
     }
   }
   void read_others(const Element& element) {
@@ -281,7 +295,9 @@ TriangleMesh read_ply(const std::string& path, std::string_view data) {
 
 void write_ply(AtomicFile& file, const TriangleMesh& mesh) {
   const bool with_normals = mesh.normals.size() == mesh.xyz.size();
-  std::string out = "ply\nformat binary_little_endian 1.0\ncomment Pellicle\nelement vertex ";
+  std::string out = "ply\nformat binary_little_endian 1.0\ncomment Pellicle\n";
+  if (!mesh.space.empty()) out += "comment " + space_comment(mesh) + "\n";
+  out += "element vertex ";
   put_integer(out, mesh.xyz.size() / 3);
   out += '\n';
   for (const char* axis : {"x\n", "y\n", "z\n"}) {

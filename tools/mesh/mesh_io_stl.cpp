@@ -130,7 +130,7 @@ void write_binary(AtomicFile& file, const TriangleMesh& mesh) {
   if (count > std::numeric_limits<uint32_t>::max()) {
     throw Failure{"an STL file cannot hold " + std::to_string(count) + " triangles"};
   }
-  std::string out = "Binary STL by Pellicle, mm";
+  std::string out = "Binary STL by Pellicle, mm " + space_comment(mesh);
   out.resize(kHeaderBytes, ' ');
   put_value(out, static_cast<uint32_t>(count));
   for (size_t i = 0; i < count; ++i) {
@@ -154,7 +154,7 @@ void put_vector(std::string& out, const double* v, bool exact) {
 }
 
 void write_ascii(AtomicFile& file, const TriangleMesh& mesh) {
-  std::string out = "solid Pellicle\n";
+  std::string out = "solid Pellicle " + space_comment(mesh) + "\n";
   for (size_t i = 0; i < mesh.abc.size() / 3; ++i) {
     const Triangle t = triangle_of(mesh, i);
     out += "facet normal";
@@ -173,7 +173,9 @@ void write_ascii(AtomicFile& file, const TriangleMesh& mesh) {
 
 }  // namespace
 
-TriangleMesh read_stl(const std::string& path, std::string_view data) {
+namespace {
+
+TriangleMesh read_either(const std::string& path, std::string_view data) {
   // Binary files may begin with "solid" too: their size tells them apart.
   if (data.size() >= kPreambleBytes) {
     const uint64_t count = load_value<uint32_t>(data.data() + kHeaderBytes, false);
@@ -182,6 +184,15 @@ TriangleMesh read_stl(const std::string& path, std::string_view data) {
   if (data.starts_with("solid")) return read_ascii(path, data);
   if (data.size() < kPreambleBytes) throw Failure{path + ": is truncated"};
   return read_binary(path, data);
+}
+
+}  // namespace
+
+TriangleMesh read_stl(const std::string& path, std::string_view data) {
+  TriangleMesh mesh = read_either(path, data);
+  // In the 80 bytes before all else, or in the first line of text.
+  mesh.space = space_in(data.substr(0, std::min<size_t>(data.find('\n'), kHeaderBytes)));
+  return mesh;
 }
 
 // The binary kind has floats only.

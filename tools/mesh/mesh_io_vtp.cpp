@@ -1,4 +1,5 @@
 // VTK's XML PolyData: written with raw appended arrays; read in every encoding but LZ4 and LZMA.
+#include <algorithm>
 #include <cstdlib>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct Cells {
 
 struct Piece {
   VtpArray points, normals;
+  std::vector<VtpArray> scalars;
   Cells polygons, strips;
 };
 
@@ -40,6 +42,16 @@ class VtpParser : public XmlVisitor {
   const std::vector<Piece>& pieces() const { return pieces_; }
   const VtpEncoding& encoding() const { return encoding_; }
   const VtpAppended& appended() const { return appended_; }
+  // As its field "SPACE" has it: the characters, as numbers, and a zero.
+  std::string space() const {
+    std::string name;
+    TextReader text(path_, space_.text);
+    while (name.size() < kLongestSpace && !text.at_end()) {
+      const double c = text.real();
+      if (c > ' ' && c <= '~') name += static_cast<char>(c);
+    }
+    return space_in("SPACE=" + name);
+  }
 
   void start(const std::string& name, Attributes attributes) override {
     array_ = nullptr;  // of a piece that the next one may move
@@ -73,7 +85,13 @@ class VtpParser : public XmlVisitor {
  private:
   void start_array(Attributes attributes) {
     const std::string name = xml_attribute(attributes, "Name");
-    array_ = pieces_.empty() ? nullptr : wanted(pieces_.back(), name);
+    const bool is_space = section_ == "FieldData" && name == "SPACE" &&
+                          xml_attribute(attributes, "format") == "ascii" && space_.text.empty();
+    const bool is_number = xml_attribute(attributes, "type").find("nt") != std::string::npos ||
+                           xml_attribute(attributes, "type").find("Float") != std::string::npos;
+    array_ = is_space          ? &space_
+             : pieces_.empty() ? nullptr
+                               : wanted(pieces_.back(), name, is_number);
     if (array_ == nullptr) return;
     *array_ = {name, xml_attribute(attributes, "type"), xml_attribute(attributes, "format"), 1, {},
                0};
@@ -81,9 +99,16 @@ class VtpParser : public XmlVisitor {
     if (components == "3") array_->components = 3;
     array_->offset = std::strtoull(xml_attribute(attributes, "offset").c_str(), nullptr, 10);
   }
-  VtpArray* wanted(Piece& piece, const std::string& name) const {
+  // Where the array is to go; null: nowhere.
+  VtpArray* wanted(Piece& piece, const std::string& name, bool is_number) const {
     if (section_ == "Points") return &piece.points;
     if (section_ == "PointData" && !name.empty() && name == normals_name_) return &piece.normals;
+    if (section_ == "PointData") {
+      if (!is_scalar_name(name) || !is_number || piece.scalars.size() >= kMostScalars) {
+        return nullptr;
+      }
+      return &piece.scalars.emplace_back();
+    }
     Cells* cells = section_ == "Polys"    ? &piece.polygons
                    : section_ == "Strips" ? &piece.strips
                                           : nullptr;
@@ -93,12 +118,15 @@ class VtpParser : public XmlVisitor {
   }
 
   static constexpr size_t kMostPieces = 65536;  // each takes a hundred times its tag
+  static constexpr size_t kMostScalars = 64;
+  static constexpr size_t kLongestSpace = 16;
 
   const std::string& path_;
   VtpEncoding encoding_;
   VtpAppended appended_;
   std::vector<Piece> pieces_;
   std::string section_, normals_name_;
+  VtpArray space_;
   VtpArray* array_ = nullptr;  // the one being read
   bool is_poly_data_ = false, unknown_compressor_ = false;
 };
@@ -127,10 +155,22 @@ class VtpReader {
         }
       });
     }
+    if (file_.pieces().size() == 1) read_scalars(file_.pieces()[0]);
+    mesh_.space(file_.space());
     return mesh_.finish();
   }
 
  private:
+  void read_scalars(const Piece& piece) {
+    for (const VtpArray& array : piece.scalars) {
+      if (array.components != 1) continue;
+      const std::vector<double> wide = values(array);
+      std::vector<float> narrow(wide.size());
+      std::transform(wide.begin(), wide.end(), narrow.begin(),
+                     [](double x) { return static_cast<float>(x); });
+      mesh_.scalars(array.name, std::move(narrow));
+    }
+  }
   std::vector<double> values(const VtpArray& array) {
     if (array.format.empty()) return {};
     return vtp_values(path_, file_.encoding(), file_.appended(), array, left_);
@@ -170,6 +210,16 @@ std::string array_tag(const char* type, const std::string& name, int components,
   return text + " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
 }
 
+// The field by which 3D Slicer knows it.
+std::string space_field(const std::string& space) {
+  if (space.empty()) return "";
+  std::string text =
+      "<FieldData>\n<DataArray type=\"String\" Name=\"SPACE\" NumberOfTuples=\"1\" "
+      "format=\"ascii\">";
+  for (const char c : space) text += std::to_string(int{c}) + " ";
+  return text + "0</DataArray>\n</FieldData>\n";
+}
+
 template <typename To, typename Values>
 void write_array(AtomicFile& file, const Values& values) {
   std::string out;
@@ -198,7 +248,8 @@ void write_vtp(AtomicFile& file, const TriangleMesh& mesh) {
   const size_t cells_at = scalars_at + scalar_bytes * mesh.scalars.size();
   std::string out =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
-      "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"";
+      "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n";
+  out += space_field(mesh.space) + "<Piece NumberOfPoints=\"";
   put_integer(out, mesh.xyz.size() / 3);
   out += "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"";
   put_integer(out, faces);

@@ -10,47 +10,10 @@
 #include "tools/file/memory.h"
 #include "tools/file/printable.h"
 #include "tools/file/text.h"
+#include "tools/mesh/base64.h"
 
 namespace plc::tools {
 namespace {
-
-// Ours, as none of the libraries that are linked decodes base64 as VTK writes it, in pieces.
-int base64_digit(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  if (c == '+') return 62;
-  if (c == '/') return 63;
-  return -1;
-}
-
-// The first `wanted` bytes, or fewer where the text ends. VTK encodes lengths and data apart, so
-// padding ends a group of four digits but not the text.
-std::string decode_base64(std::string_view text, size_t wanted) {
-  std::string out;
-  out.reserve(std::min(wanted, text.size() / 4 * 3) + 3);
-  uint32_t group = 0;
-  int digits = 0;
-  int padding = 0;
-  for (const char c : text) {
-    if (out.size() >= wanted) break;
-    if (c == '=') {
-      ++padding;
-    } else {
-      const int digit = base64_digit(c);
-      if (digit < 0) continue;  // white space
-      group |= static_cast<uint32_t>(digit) << (18 - 6 * digits);
-    }
-    if (++digits < 4) continue;
-    for (int k = 0; k < 3 - std::min(padding, 2); ++k) {
-      out += static_cast<char>((group >> (16 - 8 * k)) & 0xffU);
-    }
-    group = 0;
-    digits = padding = 0;
-  }
-  if (out.size() > wanted) out.resize(wanted);
-  return out;
-}
 
 class ArrayReader {
  public:

@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# The manual page and the completion for bash know every command and option that --help tells.
+#   tests/tools/test_manual.sh PELLICLE
+set -uo pipefail
+pellicle=$(realpath "$1")
+source=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
+here=$(mktemp -d)
+trap 'rm -rf "$here"' EXIT
+cd "$here" || exit 1
+failures=0
+
+fails() {
+  echo "FAILED: $1"
+  failures=$((failures + 1))
+}
+
+commands=$("$pellicle" --help | sed -nE '/^Subcommands:/,$ s/^  ([a-z]+) .*/\1/p')
+[ "$(wc -w <<<"$commands")" -ge 7 ] || fails "--help tells no commands"
+options_of() { "$pellicle" "$1" --help | grep -oE -- '^  (-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+'; }
+
+# ---- the manual page
+"$pellicle" --man >pellicle.1 || fails "--man"
+if command -v man >/dev/null; then
+  LC_ALL=C.UTF-8 MANWIDTH=200 man --warnings -l pellicle.1 2>warnings >plain || fails "man does not read the page"
+  [ ! -s warnings ] || fails "man warns: $(head -3 warnings)"
+  col -b <plain >text
+else
+  sed -E 's/\\f[BIR]//g; s/\\-/-/g' pellicle.1 >text
+fi
+for command in $commands; do
+  grep -qE "^ *pellicle $command " text || fails "the manual page has no pellicle $command"
+  for option in $(options_of "$command"); do
+    grep -qE -- "$option( |,|\$)" text || fails "the manual page has no $option of $command"
+  done
+done
+
+# ---- completion
+mkdir bin
+ln -s "$pellicle" bin/pellicle
+export PATH=$here/bin:$PATH
+# shellcheck source=tools/cmake/pellicle.bash
+source "$source/tools/cmake/pellicle.bash"
+complete_with() {  # WORD...: what can stand for the last one
+  COMP_WORDS=("$@")
+  COMP_CWORD=$(($# - 1))
+  COMPREPLY=()
+  _pellicle
+  printf '%s\n' "${COMPREPLY[@]}"
+}
+same() { [ "$(sort -u <<<"$2")" = "$(sort -u <<<"$3")" ] || fails "completion of $1: $(xargs <<<"$2")"; }
+same "commands" "$(complete_with pellicle '' | grep -v '^-')" "$commands"
+same "me" "$(complete_with pellicle me)" "$(printf 'measure\nmesh')"
+for command in $commands; do
+  same "options of $command" "$(complete_with pellicle "$command" --)" "$(options_of "$command")"
+done
+same "--space" "$(complete_with pellicle extract a.nii --space '')" "$(printf 'lps\nras\nvoxel')"
+same "--keep" "$(complete_with pellicle mesh a.ply --keep '')" largest
+same "--inside b" "$(complete_with pellicle extract a.nii --inside b)" below
+same "phantoms" "$(complete_with pellicle phantom sh)" shell
+same "a file" "$(complete_with pellicle extract he)" ""
+
+[ $failures -eq 0 ] || { echo "$failures failures"; exit 1; }
+echo "All as expected."

@@ -1,0 +1,21 @@
+// Apart from the reading of options: this needs images.
+#include <cmath>
+
+#include "tools/command/iso_choice.h"
+#include "tools/file/failure.h"
+#include "tools/volume/volume_statistics.h"
+
+namespace plc::tools {
+
+double resolved(const IsoChoice& choice, const plc_image& image) {
+  if (choice.is_number()) return choice.number;
+  const double value = choice.kind == IsoChoice::Kind::kOtsu
+                           ? otsu_of(image)
+                           : percentiles_of(image, {choice.number})[0];
+  if (std::isnan(value)) {
+    throw Failure{"--iso " + choice.text + ": the image tells none: all its voxels are the same"};
+  }
+  return value;
+}
+
+}  // namespace plc::tools

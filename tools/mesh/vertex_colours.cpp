@@ -1,0 +1,81 @@
+#include "tools/mesh/vertex_colours.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace plc::tools {
+
+namespace {
+
+constexpr Rgb kGrey = {0.32, 0.32, 0.32};
+
+// Viridis of matplotlib (S. van der Walt & N. Smith) at eighths, made linear.
+constexpr std::array<Rgb, 9> kViridis = {{{0.0579, 0.0004, 0.0884},
+                                          {0.0633, 0.0258, 0.1986},
+                                          {0.0432, 0.0846, 0.2591},
+                                          {0.0253, 0.1698, 0.2717},
+                                          {0.0149, 0.2814, 0.2643},
+                                          {0.0215, 0.4255, 0.2159},
+                                          {0.1122, 0.5854, 0.1213},
+                                          {0.4173, 0.7180, 0.0301},
+                                          {0.9841, 0.7993, 0.0183}}};
+
+// HSV with S = 0.9 and V = 0.8.
+Rgb hue_colour(double hue) {
+  constexpr double kValue = 0.8;
+  constexpr double kSaturation = 0.9;
+  Rgb rgb{};
+  for (size_t k = 0; k < 3; ++k) {
+    const double turn = std::fmod(hue * 6 + (k == 0 ? 5.0 : k == 1 ? 3.0 : 1.0), 6);
+    rgb[k] = kValue * (1 - kSaturation * std::clamp(std::min(turn, 4 - turn), 0.0, 1.0));
+  }
+  return rgb;
+}
+
+}  // namespace
+
+Rgb label_colour(uint32_t label) {
+  if (label == 0) return kGrey;
+  constexpr double kGolden = 0.6180339887498949;  // turns of so much never come near each other
+  const double turns = kGolden * (label - 1);
+  return hue_colour(turns - std::floor(turns));
+}
+
+Rgb value_colour(double place) {
+  if (std::isnan(place)) return kGrey;
+  const double at = std::clamp(place, 0.0, 1.0) * (kViridis.size() - 1);
+  const auto i = std::min(static_cast<size_t>(at), kViridis.size() - 2);
+  const double t = at - static_cast<double>(i);
+  Rgb rgb{};
+  for (size_t k = 0; k < 3; ++k) rgb[k] = (1 - t) * kViridis[i][k] + t * kViridis[i + 1][k];
+  return rgb;
+}
+
+ColourRange colour_range(const Scalars& scalars) {
+  std::vector<float> sorted;
+  std::copy_if(scalars.values.begin(), scalars.values.end(), std::back_inserter(sorted),
+               [](float x) { return std::isfinite(x); });
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  if (sorted.empty()) return {kNan, kNan};
+  std::sort(sorted.begin(), sorted.end());
+  const size_t last = sorted.size() - 1;
+  return {sorted[last / 50], sorted[last - last / 50]};
+}
+
+std::vector<Rgb> vertex_colours(const Scalars& scalars) {
+  std::vector<Rgb> colours;
+  colours.reserve(scalars.values.size());
+  const ColourRange range = colour_range(scalars);
+  const double width = range.high > range.low ? range.high - range.low : 1;
+  for (const float value : scalars.values) {
+    if (scalars.are_labels()) {
+      colours.push_back(label_colour(value >= 1 ? static_cast<uint32_t>(value) : 0));
+    } else {
+      colours.push_back(value_colour((static_cast<double>(value) - range.low) / width));
+    }
+  }
+  return colours;
+}
+
+}  // namespace plc::tools

@@ -1,0 +1,29 @@
+// Colours of vertices by their values or labels.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "tools/mesh/mesh_io.h"
+
+namespace plc::tools {
+
+using Rgb = std::array<double, 3>;  // linear, as glTF has them, 0 .. 1
+
+// Of a label: labels that follow each other are as far apart as hues can be. 0: grey.
+Rgb label_colour(uint32_t label);
+
+// From dark blue over green to yellow (viridis) for 0 .. 1, which is held to; grey for NaN.
+Rgb value_colour(double place);
+
+// The values that the ends of the colours stand for: the 2nd and the 98th percentile, as the few
+// largest curvatures would leave one colour to all others. Both NaN where there is no value.
+struct ColourRange {
+  double low, high;
+};
+ColourRange colour_range(const Scalars& scalars);
+
+// One per vertex.
+std::vector<Rgb> vertex_colours(const Scalars& scalars);
+
+}  // namespace plc::tools
