@@ -21,6 +21,7 @@
 #include "tools/command/command_measure.h"
 #include "tools/command/command_phantom.h"
 #include "tools/command/command_render.h"
+#include "tools/command/command_view.h"
 #include "tools/command/interrupt.h"
 #include "tools/command/option_values.h"
 #include "tools/command/slicer_description.h"
@@ -66,6 +67,7 @@ class Command {
     measure_ = add("measure", "Measure a mesh: volumes, moments, curvatures, geodesics, distances");
     phantom_ = add("phantom", "Write a synthetic test volume");
     render_ = add("render", "Draw a shaded picture of a mesh");
+    view_ = add("view", "Write a page that shows an image and surfaces in any browser");
     add_extract_options(*extract_, extract_options_);
     add_label_options(*extract_, extract_options_);
     add_slicer_option(*extract_);
@@ -73,7 +75,8 @@ class Command {
     add_measure_options(*measure_, measure_options_);
     add_phantom_options(*phantom_, phantom_arguments_);
     add_render_options(*render_, render_options_);
-    for (CLI::App* command : {extract_, check_, measure_, phantom_, render_}) {
+    add_view_options(*view_, view_options_);
+    for (CLI::App* command : {extract_, check_, measure_, phantom_, render_, view_}) {
       demand_file_names(*command);
     }
   }
@@ -91,7 +94,8 @@ class Command {
     } catch (const CLI::ParseError& e) {
       const auto unknown = app_.remaining();
       if (app_.get_subcommands().empty() && !unknown.empty()) {
-        return fail(unknown[0] + ": unknown command; extract, check, measure, phantom or render");
+        return fail(unknown[0] +
+                    ": unknown command; extract, check, measure, phantom, render or view");
       }
       return fail(e.what());
     }
@@ -99,7 +103,8 @@ class Command {
     if (check_->parsed()) return run_check(check_options_);
     if (measure_->parsed()) return run_measure(measure_options_);
     if (phantom_->parsed()) return run_phantom(phantom_arguments_);
-    return run_render(render_options_);
+    if (render_->parsed()) return run_render(render_options_);
+    return run_view(view_options_);
   }
 
  private:
@@ -115,11 +120,13 @@ class Command {
   CLI::App* measure_ = nullptr;
   CLI::App* phantom_ = nullptr;
   CLI::App* render_ = nullptr;
+  CLI::App* view_ = nullptr;
   ExtractOptions extract_options_;
   CheckOptions check_options_;
   MeasureOptions measure_options_;
   PhantomArguments phantom_arguments_;
   RenderOptions render_options_;
+  ViewOptions view_options_;
 };
 
 }  // namespace

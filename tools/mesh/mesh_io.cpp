@@ -17,6 +17,8 @@
 namespace plc::tools {
 namespace {
 
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
 struct Format {
   const char* suffix;
   TriangleMesh (*read)(const std::string& path, std::string_view data);
@@ -69,6 +71,18 @@ void MeshBuilder::normal(double x, double y, double z) {
                        {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
 }
 
+void MeshBuilder::scalar(const std::string& name, double value) {
+  auto& all = mesh_.scalars;
+  auto found =
+      std::find_if(all.begin(), all.end(), [&](const Scalars& s) { return s.name == name; });
+  if (found == all.end()) {
+    if (all.size() == kMaxScalars) return;
+    found = all.insert(all.end(), Scalars{name, {}});
+  }
+  if (found->values.size() < vertex_count()) found->values.resize(vertex_count(), kNone);
+  if (!found->values.empty()) found->values.back() = static_cast<float>(value);
+}
+
 uint32_t MeshBuilder::index(int64_t corner) const {
   if (!std::in_range<uint32_t>(corner)) {
     throw Failure{path_ + ": face " + std::to_string(mesh_.abc.size() / 3) + " refers to vertex " +
@@ -99,6 +113,7 @@ TriangleMesh MeshBuilder::finish() {
                   std::to_string(mesh_.abc[i]) + " of " + std::to_string(count)};
   }
   if (mesh_.normals.size() != mesh_.xyz.size()) mesh_.normals.clear();
+  for (Scalars& scalars : mesh_.scalars) scalars.values.resize(count, kNone);
   return std::move(mesh_);
 }
 

@@ -2,6 +2,7 @@
 // tells what is wrong with a damaged file in one line, takes no memory that the file has not, and
 // writes the same bytes everywhere.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -12,7 +13,7 @@ namespace plc::tools {
 
 // One value per vertex; NaN where there is none.
 struct Scalars {
-  std::string name;  // letters and digits
+  std::string name;  // letters and digits where it is written; anything where it was read
   std::vector<float> values;
 };
 
@@ -20,12 +21,15 @@ struct TriangleMesh {
   std::vector<double> xyz;         // three per vertex
   std::vector<uint32_t> abc;       // three per face
   std::vector<float> normals;      // three per vertex, or none
-  std::vector<Scalars> scalars{};  // written, not read
+  std::vector<Scalars> scalars{};  // of a .ply or .vtp
   bool doubles = false;            // how the coordinates are written, else as floats
 };
 
 // By suffix. Polygons are fan-triangulated; the corners of an STL are welded where they coincide
-// exactly. Throws Failure.
+// exactly. Scalars are the first kMaxScalars properties of a .ply's vertices that are neither
+// coordinates, normals nor colours, or the point data of a .vtp with one number per point. Throws
+// Failure.
+constexpr size_t kMaxScalars = 16;
 TriangleMesh read_mesh(const std::string& path);
 
 // Throws Failure unless the suffix is known, its format holds scalars where they are asked for, and

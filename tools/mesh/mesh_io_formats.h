@@ -30,10 +30,13 @@ class MeshBuilder {
   size_t vertex_count() const { return mesh_.xyz.size() / 3; }
   void vertex(double x, double y, double z) { mesh_.xyz.insert(mesh_.xyz.end(), {x, y, z}); }
   void normal(double x, double y, double z);
+  // A value of the last vertex. Where a vertex has got none, it is NaN; beyond kMaxScalars names
+  // they are left out.
+  void scalar(const std::string& name, double value);
   // A fan around the first corner. Failure below 3 corners or where an index is no uint32.
   void polygon(std::span<const int64_t> corners);
   void triangle(int64_t a, int64_t b, int64_t c);
-  // Checks every index; keeps the normals where there is one per vertex.
+  // Checks every index; keeps the normals where there is one per vertex, and all scalars.
   TriangleMesh finish();
 
  private:

@@ -1,4 +1,5 @@
-// PLY: ASCII, little and big endian, any properties; vertex x y z, perhaps nx ny nz, and faces.
+// PLY: ASCII, little and big endian, any properties; vertex x y z, perhaps nx ny nz and scalars,
+// and faces.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -223,23 +224,33 @@ class PlyReader {
   }
   void read_vertices(const Element& element) {
     static constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
-    double slots[7] = {};  // the last takes what is not asked for
+    static constexpr std::string_view kColours[] = {"red", "green", "blue", "alpha"};
+    double slots[7] = {};  // the last takes what has no other place
     std::vector<double*> target;
+    std::vector<size_t> scalars;  // which properties they are
     int found = 0;
     for (const Property& property : element.properties) {
       if (property.count) throw Failure{path_ + ": has lists at its vertices"};
       const auto* const name = std::find(std::begin(kNames), std::end(kNames), property.name);
+      if (name != std::end(kNames)) {
+        found |= 1 << (name - std::begin(kNames));
+      } else if (scalars.size() < kMaxScalars && std::find(std::begin(kColours), std::end(kColours),
+                                                           property.name) == std::end(kColours)) {
+        scalars.push_back(target.size());
+      }
       target.push_back(slots + (name - std::begin(kNames)));
-      if (name != std::end(kNames)) found |= 1 << (name - std::begin(kNames));
     }
     if ((found & 7) != 7) throw Failure{path_ + ": its vertices have no x, y and z"};
     const bool with_normals = found == 63;
+    std::vector<double> read(target.size());
     for (int64_t i = 0; i < element.count; ++i) {
       for (size_t k = 0; k < target.size(); ++k) {
-        *target[k] = values_.next(element.properties[k].scalar);
+        read[k] = values_.next(element.properties[k].scalar);
+        *target[k] = read[k];
       }
       mesh_.vertex(slots[0], slots[1], slots[2]);
       if (with_normals) mesh_.normal(slots[3], slots[4], slots[5]);
+      for (const size_t k : scalars) mesh_.scalar(element.properties[k].name, read[k]);
     }
   }
   void read_others(const Element& element) {

@@ -17,6 +17,7 @@ struct Cells {
 
 struct Piece {
   VtpArray points, normals;
+  std::vector<VtpArray> scalars;
   Cells polygons, strips;
 };
 
@@ -73,7 +74,7 @@ class VtpParser : public XmlVisitor {
  private:
   void start_array(Attributes attributes) {
     const std::string name = xml_attribute(attributes, "Name");
-    array_ = pieces_.empty() ? nullptr : wanted(pieces_.back(), name);
+    array_ = pieces_.empty() ? nullptr : wanted(pieces_.back(), name, attributes);
     if (array_ == nullptr) return;
     *array_ = {name, xml_attribute(attributes, "type"), xml_attribute(attributes, "format"), 1, {},
                0};
@@ -81,9 +82,15 @@ class VtpParser : public XmlVisitor {
     if (components == "3") array_->components = 3;
     array_->offset = std::strtoull(xml_attribute(attributes, "offset").c_str(), nullptr, 10);
   }
-  VtpArray* wanted(Piece& piece, const std::string& name) const {
+  VtpArray* wanted(Piece& piece, const std::string& name, Attributes attributes) const {
     if (section_ == "Points") return &piece.points;
-    if (section_ == "PointData" && !name.empty() && name == normals_name_) return &piece.normals;
+    if (section_ == "PointData" && !name.empty()) {
+      if (name == normals_name_) return &piece.normals;
+      const std::string components = xml_attribute(attributes, "NumberOfComponents");
+      const bool one = components.empty() || components == "1";
+      if (!one || !is_vtp_number(xml_attribute(attributes, "type"))) return nullptr;
+      return piece.scalars.size() < kMaxScalars ? &piece.scalars.emplace_back() : nullptr;
+    }
     Cells* cells = section_ == "Polys"    ? &piece.polygons
                    : section_ == "Strips" ? &piece.strips
                                           : nullptr;
@@ -113,7 +120,14 @@ class VtpReader {
       const auto base = static_cast<int64_t>(mesh_.vertex_count());
       const std::vector<double> xyz = values(piece.points);
       if (xyz.size() % 3 != 0) throw Failure{path_ + ": its points are not triples"};
-      for (size_t i = 0; i < xyz.size(); i += 3) mesh_.vertex(xyz[i], xyz[i + 1], xyz[i + 2]);
+      std::vector<std::vector<double>> scalars;
+      for (const VtpArray& array : piece.scalars) scalars.push_back(values(array));
+      for (size_t i = 0; i < xyz.size(); i += 3) {
+        mesh_.vertex(xyz[i], xyz[i + 1], xyz[i + 2]);
+        for (size_t k = 0; k < scalars.size(); ++k) {
+          if (i / 3 < scalars[k].size()) mesh_.scalar(piece.scalars[k].name, scalars[k][i / 3]);
+        }
+      }
       const std::vector<double> normals = values(piece.normals);
       for (size_t i = 0; normals.size() == xyz.size() && i < normals.size(); i += 3) {
         mesh_.normal(normals[i], normals[i + 1], normals[i + 2]);
