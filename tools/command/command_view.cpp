@@ -135,6 +135,7 @@ int run_view(const ViewOptions& options) {
   ViewedScene scene;
   scene.name = std::filesystem::path(options.image).filename().string();
   scene.image = volume.image;
+  scene.version = plc_version_string();
   const std::vector<std::string> names = surface_names(options.surfaces);
   for (size_t i = 0; i < names.size(); ++i) {
     const std::string& path = options.surfaces[i];

@@ -9,9 +9,9 @@ namespace plc::tools {
 
 namespace {
 
-constexpr double kCut = 0.0001;       // part of the voxels that the window leaves out at each end
-constexpr double kExactRange = 255;   // of integers that 8 bits hold as they are
-constexpr size_t kMaxBins = 1 << 16;  // every value of 16 bits has its own
+constexpr double kCut = 0.0001;      // part of the voxels that the window leaves out at each end
+constexpr double kExactRange = 255;  // of integers that 8 bits hold as they are
+constexpr size_t kMaxSamples = 1 << 20;
 
 size_t count_of(const std::array<int64_t, 3>& dims) {
   return static_cast<size_t>(dims[0] * dims[1] * dims[2]);
@@ -32,33 +32,28 @@ struct Voxels {
   }
 };
 
+// Percentiles of a million voxels at most: a histogram would be all in one bin where a few voxels
+// are far from all others.
 template <typename T>
 GreyWindow derived_window(const Voxels<T>& voxels, double low, double high) {
-  const double range = high - low;
-  if (!(range > 0)) return {low, low + kExactRange};
-  const bool integers = std::numeric_limits<T>::is_integer;
-  if (integers && range <= kExactRange) return {low, low + kExactRange};
-  const size_t bins =
-      integers && range < kMaxBins ? static_cast<size_t>(range) + 1 : size_t{kMaxBins};
-  const double scale = static_cast<double>(bins - 1) / range;
-  std::vector<size_t> histogram(bins, 0);
-  size_t total = 0;
-  voxels.each([&](double value) {
-    ++histogram[static_cast<size_t>((value - low) * scale)];
-    ++total;
-  });
-  const double left_out = kCut * static_cast<double>(total);
-  size_t first = 0;
-  size_t last = bins - 1;
-  for (size_t sum = histogram[0]; static_cast<double>(sum) <= left_out && first < last;) {
-    sum += histogram[++first];
+  if (!(high > low)) return {low, low + kExactRange};
+  if (std::numeric_limits<T>::is_integer && high - low <= kExactRange) {
+    return {low, low + kExactRange};
   }
-  for (size_t sum = histogram[last]; static_cast<double>(sum) <= left_out && last > first;) {
-    sum += histogram[--last];
+  const size_t stride = voxels.count / kMaxSamples | 1;  // odd: not along one column of the image
+  std::vector<double> samples;
+  for (size_t i = 0; i < voxels.count; i += stride) {
+    const auto value = static_cast<double>(voxels.values[i]);
+    if (std::isfinite(value)) samples.push_back(value);
   }
-  const double from = low + static_cast<double>(first) / scale;
-  const double to = low + static_cast<double>(last) / scale;
-  return to > from ? GreyWindow{from, to} : GreyWindow{low, high};
+  const auto ranked = [&](double part) {
+    const auto rank = std::lround(part * static_cast<double>(samples.size() - 1));
+    std::nth_element(samples.begin(), samples.begin() + rank, samples.end());
+    return samples[static_cast<size_t>(rank)];
+  };
+  if (samples.empty()) return {low, high};
+  const GreyWindow window = {ranked(kCut), ranked(1 - kCut)};
+  return window.high > window.low ? window : GreyWindow{low, high};
 }
 
 uint8_t grey(double value, const GreyWindow& window) {

@@ -138,7 +138,7 @@ bool is_outside(const plc_image& image, const TriangleMesh& mesh) {
 uint64_t write_page(const std::string& path, const PageSource& source, const ViewedScene& scene) {
   PageData data(path, source);
   const Point middle = middle_of(scene.image);
-  Json json = {{"version", plc_version_string()}, {"notes", scene.notes}};
+  Json json = {{"version", scene.version}, {"notes", scene.notes}};
   json["image"] = image_json(scene, middle, data);
   json["surfaces"] = Json::array();
   for (const ViewedSurface& surface : scene.surfaces) {

@@ -23,6 +23,7 @@ struct ViewedScene {
   GreyImage grey;
   std::vector<ViewedSurface> surfaces;
   std::vector<std::string> notes;  // lines that the page shows, too
+  std::string version;             // of the program
 };
 
 // Brings a surface from `space` to LPS. Throws Failure, which names `path`, where it has no face or
