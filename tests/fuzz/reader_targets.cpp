@@ -27,6 +27,9 @@ void check_mesh(const TriangleMesh& mesh) {
           "a face of a vertex that is not there");
   require(mesh.normals.empty() || mesh.normals.size() == mesh.xyz.size(),
           "normals of some vertices only");
+  require(std::all_of(mesh.scalars.begin(), mesh.scalars.end(),
+                      [&](const auto& scalars) { return scalars.values.size() == vertices; }),
+          "values at some vertices only");
 }
 
 using Reader = TriangleMesh (*)(const std::string& path, std::string_view data);

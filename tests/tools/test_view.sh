@@ -73,8 +73,7 @@ chromium=$(command -v chromium || command -v chromium-browser || command -v goog
   echo "SKIPPED: the pages have been made, but there is no chromium to look at them"
   exit 77
 }
-cp "$tests/tools/view_pages.mjs" "$npm/" || exit 1
-node "$npm/view_pages.mjs" "$chromium" "$contours" "$here" || failures=$((failures + 1))
+node "$tests/tools/view_pages.mjs" "$npm" "$chromium" "$contours" "$here" || failures=$((failures + 1))
 
 if [ $failures -gt 0 ]; then echo "$failures failures"; exit 1; fi
 echo "All as expected."

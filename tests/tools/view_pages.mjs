@@ -1,12 +1,13 @@
 // Pages of `pellicle view` in a headless Chromium: nothing is fetched, nothing is complained of, there is
 // something to see, and contours, positions, values and distances are those of the files.
-//   node view_pages.mjs CHROMIUM VIEW_CONTOURS FOLDER        run by test_view.sh
+//   node view_pages.mjs NPM_FOLDER CHROMIUM VIEW_CONTOURS FOLDER        run by test_view.sh
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { join } from 'node:path';
-import puppeteer from 'puppeteer-core';
 
-const [, , chromium, contours, folder] = process.argv;
+const [npm, chromium, contours, folder] = process.argv.slice(2);
+const puppeteer = createRequire(join(npm, 'package.json'))('puppeteer-core');
 let failures = 0;
 function check(what, holds, found = '') {
   if (holds) return;
@@ -192,6 +193,12 @@ async function checkPoint(page, name, image) {
   check('a click in space takes a surface', picked.Surface === 'values' && 'Distance' in picked, JSON.stringify(picked));
   const apart = Math.hypot(...numbersOf(picked.LPS).map((x, c) => x - middle[2 + c]));
   check('a click in space takes the point', apart < 1, `${picked.LPS}, ${apart} mm apart`);
+
+  // vtk.js would show wires.
+  await page.keyboard.press('w');
+  const surfaces = await page.evaluate(() => window.pellicle.then(({ views }) => views.space.surfaces.every(({ actor }) => actor.getProperty().getRepresentation() === 2)));
+  check('W is a key of the page alone', surfaces && (await page.$eval('[data-tool="window"]', (button) => button.getAttribute('aria-checked'))) === 'true');
+  await page.keyboard.press('p');
 
   // Wheel, keys, window, one view alone, theme.
   const slice = () => page.$eval('[data-view="Axial"] .where', (where) => where.textContent);

@@ -95,7 +95,7 @@ async function start() {
   setTool('point');
   setCursor(state.frame.placeOf(state.frame.grid.map((n) => Math.floor(n / 2))));
   changed('image');
-  return { state, views: { axial, sagittal, coronal, space } };
+  return { state, setCursor, views: { axial, sagittal, coronal, space } };
 }
 
 // For tests, and for whoever opens the browser's console: what is shown, once it is.

@@ -87,6 +87,9 @@ export class SpaceView extends CanvasView {
     this.interactor.initialize();
     this.interactor.setInteractorStyle(vtkInteractorStyleTrackballCamera.newInstance());
     this.interactor.bindEvents(this.stage);
+    this.stage.tabIndex = -1;
+    // vtk.js has keys of its own, as W for wires: here they are those of the page.
+    this.root.addEventListener('keypress', (event) => event.stopPropagation(), true);
     this.renderer.getActiveCamera().onModified(() => this.ask());
     this.#clicks();
     this.fitted = false;
