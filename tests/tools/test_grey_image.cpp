@@ -33,6 +33,7 @@ TEST_CASE("integers over at most 256 values are kept as they are", "[view]") {
   CHECK(grey.window.step() == 1);
   for (size_t i = 0; i < voxels.size(); ++i) CHECK(grey.voxels[i] + grey.window.low == voxels[i]);
   CHECK_FALSE(grey.reduced());
+  CHECK(grey.exact);
 }
 
 TEST_CASE("a few extreme voxels do not widen the window", "[view]") {
@@ -57,6 +58,7 @@ TEST_CASE("a window that is asked for is the one there is", "[view]") {
   CHECK(grey.voxels == std::vector<uint8_t>{0, 0, 128, 255, 255, 51, 0, 255});
   CHECK(grey.low == 0);
   CHECK(grey.high == 60000);
+  CHECK_FALSE(grey.exact);
 }
 
 TEST_CASE("a large image is reduced along its short voxels, each the mean of those it stands for",

@@ -66,6 +66,38 @@ works "a page in voxels" 0 "$pellicle" view sagittal.mhd voxels.ply --space voxe
 works "a reduced page" 0 "$pellicle" view oblique.mhd surface.ply --max-voxels 9000 -o reduced.html
 says "a reduced page" "is reduced to 20 x 22 x 18 voxels, each the mean of 2 x 2 x 2" stdout
 works "an image alone" 0 "$pellicle" view blobs.mhd -o alone.html
+# Two tetrahedra, of labels 3 and 8, over labels.
+cat >labels.ply <<'END'
+ply
+format ascii 1.0
+element vertex 8
+property float x
+property float y
+property float z
+property int Label
+element face 8
+property list uchar int vertex_indices
+end_header
+4 4 4 3
+16 4 4 3
+4 16 4 3
+4 4 18 3
+12 12 10 8
+20 12 10 8
+12 20 10 8
+12 12 20 8
+3 0 2 1
+3 0 1 3
+3 0 3 2
+3 1 2 3
+3 4 6 5
+3 4 5 7
+3 4 7 6
+3 5 6 7
+END
+works "labels" 0 "$pellicle" phantom labels --size 24 -o labels.nrrd
+works "a page of labels" 0 "$pellicle" view labels.nrrd labels.ply -o labels.html
+[ "$(wc -l <stdout)" -eq 1 ] || fails "a page of labels: something is said of its values"
 if grep -lE '(src|href)=["'\'']?(https?:)?//' ./*.html; then fails "a page names another one"; fi
 
 chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || {

@@ -86,7 +86,7 @@ TEST_CASE("no name ends the script element that it stands in, and the page is th
   ViewedScene scene;
   scene.name = "</script><script>alert(1)</script>\xff";
   scene.image = turned_image();
-  scene.grey = {{2, 2, 2}, {5, 10, 15}, {}, 0, 255, std::vector<uint8_t>(8, 1)};
+  scene.grey = {{2, 2, 2}, {5, 10, 15}, {}, true, 0, 255, std::vector<uint8_t>(8, 1)};
   scene.surfaces.push_back({"<!--", ball_at(119, 42, -2, 3)});
   const PageSource source = {"<before>\n", "<after>\n", {}};
   const uint64_t size = write_page(folder / "a.html", source, scene);

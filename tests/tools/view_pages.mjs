@@ -267,6 +267,19 @@ for (const [html, image, files, space] of [
   await page.close();
 }
 
+// Labels at vertices are colours without being asked for, and values of a label image are whole.
+{
+  const page = await opened('labels.html');
+  const labels = await page.evaluate(() => window.pellicle.then(({ state, views }) => {
+    const [surface] = state.surfaces;
+    const contours = [...views.axial.paths.get(surface).paths.keys()];
+    return { shown: surface.shown?.name, contours, colours: contours.map((label) => surface.shown.scale.colour(label).join()) };
+  }));
+  check('labels are shown', labels.shown === 'Label' && labels.contours.sort().join() === '3,8' && new Set(labels.colours).size === 2, JSON.stringify(labels));
+  check('a label is a whole number', /^\d+$/.test((await points(page)).Value), (await points(page)).Value);
+  await page.close();
+}
+
 {
   const page = await opened('alone.html');
   check('an image alone is seen', (await seen(page, 'Axial', '.stage')).colours > 40);

@@ -38,6 +38,7 @@ void check_page_path(const std::string& path) {
 // The file's name without its folder and suffix; with its folder where two would be the same.
 std::vector<std::string> surface_names(const std::vector<std::string>& paths) {
   std::vector<std::string> names;
+  names.reserve(paths.size());
   for (const std::string& path : paths) {
     names.push_back(std::filesystem::path(path).stem().string());
   }
@@ -70,7 +71,7 @@ std::vector<std::string> notes_of(const GreyImage& grey) {
     notes.push_back("the image is reduced to " + text_of_dims(grey.dims) +
                     " voxels, each the mean of " + text_of_dims(grey.reduction));
   }
-  notes.push_back(grey_text(grey));
+  if (!grey.exact) notes.push_back(grey_text(grey));
   return notes;
 }
 
@@ -150,8 +151,7 @@ int run_view(const ViewOptions& options) {
   scene.notes.insert(scene.notes.end(), notes.begin(), notes.end());
   const uint64_t size = write_page(options.output, source, scene);
   for (const std::string& note : notes) std::printf("note     %s\n", note.c_str());
-  std::printf("page     %s, %s MB\n", options.output.c_str(),
-              rounded(static_cast<double>((size + 99999) / 100000) / 10).c_str());
+  std::printf("page     %s, %.1f MB\n", options.output.c_str(), static_cast<double>(size) / 1e6);
   return 0;
 }
 

@@ -135,6 +135,9 @@ GreyImage made_of(const plc_image& image, const std::optional<GreyWindow>& windo
   grey.window = window ? *window : derived_window(voxels, grey.low, grey.high);
   choose_reduction(image, max_voxels, grey);
   grey.voxels = reduced(values, image.dims, grey);
+  grey.exact = std::numeric_limits<T>::is_integer && !grey.reduced() && grey.window.step() == 1 &&
+               grey.window.low <= grey.low && grey.high <= grey.window.high &&
+               grey.window.low == std::floor(grey.window.low);
   return grey;
 }
 

@@ -23,6 +23,7 @@ struct GreyImage {
   // is of those that are left.
   std::array<int64_t, 3> reduction = {1, 1, 1};
   GreyWindow window;
+  bool exact = false;           // greys tell the image's values apart, all of them
   double low = 0, high = 0;     // the smallest and the largest finite value of the image
   std::vector<uint8_t> voxels;  // x fastest; what is not finite is 0
 

@@ -69,7 +69,7 @@ Json image_json(const ViewedScene& scene, const Point& middle, PageData& data) {
           {"matrix", frame.matrix},
           {"origin", frame.origin},
           {"middle", middle},
-          {"integers", image.type != PLC_F32},
+          {"exact", grey.exact},
           {"range", {grey.low, grey.high}},
           {"window", {grey.window.low, grey.window.high}},
           {"reduction", grey.reduction},

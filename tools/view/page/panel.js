@@ -2,6 +2,7 @@
 import { changed, millimetres, setTool, state, text, valueOf } from './state.js';
 import { length, sub } from './vectors.js';
 
+const MANY = 3;
 const byId = (id) => document.getElementById(id);
 
 function made(tag, properties = {}, ...children) {
@@ -15,13 +16,13 @@ const label = (words) => made('span', { className: 'label', textContent: words }
 // ---- the point
 
 function greyText(grey) {
-  const { window: [low, high], range, integers } = state.image;
+  const { window: [low, high], range, exact } = state.image;
   const step = (high - low) / 255;
+  if (exact) return text(valueOf(grey), 10);
   const value = text(valueOf(grey), step);
   if (grey === 0 && range[0] < low) return `${value} or less`;
   if (grey === 255 && range[1] > high) return `${value} or more`;
-  const exact = integers && step === 1 && state.image.reduction.every((r) => r === 1);
-  return exact ? value : `${value} ± ${text(step / 2, step / 2)}`;
+  return `${value} ± ${text(step / 2, step / 2)}`;
 }
 
 export function showPoint() {
@@ -166,11 +167,26 @@ function showDistances() {
   byId('distances').replaceChildren(...(rows.length ? rows : [made('li', { className: 'faint', textContent: hint })]));
 }
 
+// All surfaces on or off at once, where they are many.
+function showSurfaces() {
+  const both = [['Show all', true], ['Hide all', false]].map(([words, visible]) => {
+    const button = made('button', { type: 'button', textContent: words });
+    button.addEventListener('click', () => {
+      for (const surface of state.surfaces) surface.visible = visible;
+      showSurfaces();
+      changed('surfaces');
+    });
+    return button;
+  });
+  const rows = state.surfaces.map(surfaceRows);
+  byId('surfaces').replaceChildren(...(rows.length > MANY ? [row(...both)] : []), ...rows);
+}
+
 export function buildPanel(told, presets) {
   const spacing = state.image.spacing.map((x) => Number(x.toPrecision(4))).join(' × ');
   const notes = [`${state.image.dims.join(' × ')} voxels of ${spacing} mm`, ...told.notes];
   byId('notes').replaceChildren(...notes.map((note) => made('li', { textContent: note })));
-  byId('surfaces').replaceChildren(...state.surfaces.map(surfaceRows));
+  showSurfaces();
   byId('surface-panel').hidden = state.surfaces.length === 0;
   const showWindow = imageRows(presets);
   for (const button of document.querySelectorAll('[data-tool]')) {
