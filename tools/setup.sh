@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian packages that the named purposes need:
 #   tools/setup.sh [build] [test] [python] [demo] [lint] [compilers] [perf] [peers] [fuzz]
-#     [package] [coverage] [valgrind] [arm] [wasm] [windows]
+#     [package] [coverage] [valgrind] [page] [view] [arm] [wasm] [windows]
 # Without a purpose: build and test, as cmake builds the tests, too, unless told otherwise.
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
@@ -24,6 +24,8 @@ valgrind=(valgrind)
 arm=(g++-aarch64-linux-gnu qemu-user-static libtbb-dev:arm64 libhwy-dev:arm64 libmimalloc2.0:arm64)
 wasm=(emscripten nodejs catch2)
 windows=(g++-mingw-w64-x86-64-posix)
+page=(nodejs npm)  # the page of pellicle view
+view=("${page[@]}" chromium)  # its test
 
 [ $# -gt 0 ] || set -- build test
 wanted=()
@@ -41,21 +43,26 @@ for purpose in "$@"; do
     package) wanted+=("${package[@]}") ;;
     coverage) wanted+=("${coverage[@]}") ;;
     valgrind) wanted+=("${valgrind[@]}") ;;
+    page) wanted+=("${page[@]}") ;;
+    view) wanted+=("${view[@]}") ;;
     arm) wanted+=("${arm[@]}") ;;
     wasm) wanted+=("${wasm[@]}") ;;
     windows) wanted+=("${windows[@]}") ;;
     *)
       echo "setup.sh: unknown purpose $purpose: build, test, python, demo, lint, compilers, perf," \
-        "peers, fuzz, package, coverage, valgrind, arm, wasm or windows" >&2
+        "peers, fuzz, package, coverage, valgrind, page, view, arm, wasm or windows" >&2
       exit 2
       ;;
   esac
 done
 
+# Programs that may have come another way than from Debian's packages.
+declare -A program=([nodejs]=node [npm]=npm [chromium]=chromium)
 missing=()
 for package in "${wanted[@]}"; do
   status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
-  [ "$status" = installed ] || missing+=("$package")
+  if [ "$status" = installed ] || command -v "${program[$package]:-}" >/dev/null; then continue; fi
+  missing+=("$package")
 done
 [ ${#missing[@]} -gt 0 ] || exit 0
 

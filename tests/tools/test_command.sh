@@ -281,6 +281,10 @@ done
 works "measure to .ply" 0 "$pellicle" measure surface.ply --geodesic-vertex 3 -o out/m.ply
 says "values in .ply" "property float Geodesic" out/m.ply
 for file in out/m.vtp out/m.ply; do works "check of $file" 0 "$pellicle" check $file; done
+# Values that a mesh has brought are not written beside those that are asked for.
+works "measure of what has been measured" 0 "$pellicle" measure out/m.ply --curvature -o out/again.ply
+says "measure of what has been measured" "^property float MeanCurvature" out/again.ply
+grep -q "^property float Geodesic" out/again.ply && fails "values of an earlier measure are written again"
 works "components" 0 "$pellicle" measure surface.ply --components 2000000000 --json out/parts.json
 works "an empty mesh" 0 "$pellicle" measure points.off --curvature --json out/points.json
 says "an empty mesh" '"min": null' out/points.json

@@ -95,6 +95,10 @@ for n in 21 22; do
 done
 full "measure" "a.vtp a.json" "$pellicle" measure ball.ply --curvature -o out/a.vtp \
   --json out/a.json
+# Where the build has found no node there is no page.
+if "$pellicle" view ball.nrrd ball.ply -o page.html >/dev/null 2>&1; then
+  full "view" a.html "$pellicle" view ball.nrrd ball.ply -o out/a.html
+fi
 full "render" a.png "$pellicle" render ball.ply -o out/a.png
 
 echo "$faults faults, $failures failures"

@@ -519,3 +519,35 @@ TEST_CASE("A link is written through, a device directly", "[mesh_io]") {
              Catch::Contains("No space left"));
   CHECK(folder.file_count() == 3);
 }
+
+TEST_CASE("values of other types are read, colours and what is no number are left out",
+          "[mesh_io]") {
+  const fixtures::Folder folder;
+  const TriangleMesh ply = read_mesh(
+      folder.put("a.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty uchar red\nproperty float x\n"
+                 "property float y\nproperty float z\nproperty int label\nelement face 1\n"
+                 "property list uchar int vertex_indices\nend_header\n"
+                 "9 0 0 0 5\n9 1 0 0 5\n9 0 1 0 70\n3 0 1 2\n"));
+  REQUIRE(ply.scalars.size() == 1);
+  CHECK(ply.scalars[0].name == "label");
+  CHECK(ply.scalars[0].values == std::vector<float>{5, 5, 70});
+  const std::string piece =
+      "<Piece><Points><DataArray type='Float32' NumberOfComponents='3' format='ascii'>"
+      "0 0 0 1 0 0 0 1 0</DataArray></Points><Polys>"
+      "<DataArray type='Int32' Name='connectivity' format='ascii'>0 1 2</DataArray>"
+      "<DataArray type='Int32' Name='offsets' format='ascii'>3</DataArray></Polys>";
+  const std::string values =
+      "<PointData><DataArray type='String' Name='words' format='ascii'>a b c</DataArray>"
+      "<DataArray type='Float32' Name='vectors' NumberOfComponents='2' format='ascii'>"
+      "1 2 3 4 5 6</DataArray>"
+      "<DataArray type='UInt8' Name='Label' format='ascii'>1 1 2</DataArray></PointData>";
+  const TriangleMesh vtp =
+      read_mesh(folder.put("a.vtp", "<VTKFile type='PolyData'><PolyData>" + piece + "</Piece>" +
+                                        piece + values + "</Piece></PolyData></VTKFile>"));
+  REQUIRE(vtp.scalars.size() == 1);
+  CHECK(vtp.scalars[0].name == "Label");
+  REQUIRE(vtp.scalars[0].values.size() == 6);  // the first piece has none
+  CHECK(std::isnan(vtp.scalars[0].values[2]));
+  CHECK(vtp.scalars[0].values[5] == 2);
+}

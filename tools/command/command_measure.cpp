@@ -212,6 +212,7 @@ int run_measure(const MeasureOptions& options) {
   plc_context_options_defaults(&context_options);
   const ContextHandle context = make_context(context_options);
   TriangleMesh mesh = read_mesh(options.mesh);
+  mesh.scalars.clear();  // those that are written are those that have been asked for
   const Measured measured = measure(context.get(), mesh, options);
   if (!options.output.empty()) {
     settle_precision(context.get(), mesh);

@@ -23,6 +23,7 @@
 #include "tools/command/command_mesh.h"
 #include "tools/command/command_phantom.h"
 #include "tools/command/command_render.h"
+#include "tools/command/command_view.h"
 #include "tools/command/interrupt.h"
 #include "tools/command/manual_page.h"
 #include "tools/command/option_values.h"
@@ -72,6 +73,7 @@ class Command {
     mesh_ = add("mesh", "Convert a mesh, keep parts of it, merge several");
     phantom_ = add("phantom", "Write a synthetic test volume");
     render_ = add("render", "Draw a shaded picture of a mesh");
+    view_ = add("view", "Write a page that shows an image and surfaces in any browser");
     add_extract_options(*extract_, extract_options_);
     add_label_options(*extract_, extract_options_);
     add_slicer_option(*extract_);
@@ -81,7 +83,8 @@ class Command {
     add_mesh_options(*mesh_, mesh_options_);
     add_phantom_options(*phantom_, phantom_arguments_);
     add_render_options(*render_, render_options_);
-    for (CLI::App* command : {extract_, info_, check_, measure_, mesh_, phantom_, render_}) {
+    add_view_options(*view_, view_options_);
+    for (CLI::App* command : {extract_, info_, check_, measure_, mesh_, phantom_, render_, view_}) {
       demand_file_names(*command);
     }
   }
@@ -99,8 +102,9 @@ class Command {
     } catch (const CLI::ParseError& e) {
       const auto unknown = app_.remaining();
       if (app_.get_subcommands().empty() && !unknown.empty()) {
-        return fail(unknown[0] +
-                    ": unknown command; extract, info, check, measure, mesh, phantom or render");
+        return fail(
+            unknown[0] +
+            ": unknown command; extract, info, check, measure, mesh, phantom, render or view");
       }
       return fail(e.what());
     }
@@ -110,7 +114,8 @@ class Command {
     if (measure_->parsed()) return run_measure(measure_options_);
     if (mesh_->parsed()) return run_mesh(mesh_options_);
     if (phantom_->parsed()) return run_phantom(phantom_arguments_);
-    return run_render(render_options_);
+    if (render_->parsed()) return run_render(render_options_);
+    return run_view(view_options_);
   }
 
  private:
@@ -128,6 +133,7 @@ class Command {
   CLI::App* mesh_ = nullptr;
   CLI::App* phantom_ = nullptr;
   CLI::App* render_ = nullptr;
+  CLI::App* view_ = nullptr;
   ExtractOptions extract_options_;
   InfoOptions info_options_;
   CheckOptions check_options_;
@@ -135,6 +141,7 @@ class Command {
   MeshOptions mesh_options_;
   PhantomArguments phantom_arguments_;
   RenderOptions render_options_;
+  ViewOptions view_options_;
 };
 
 }  // namespace

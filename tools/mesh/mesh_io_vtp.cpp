@@ -87,8 +87,7 @@ class VtpParser : public XmlVisitor {
     const std::string name = xml_attribute(attributes, "Name");
     const bool is_space = section_ == "FieldData" && name == "SPACE" &&
                           xml_attribute(attributes, "format") == "ascii" && space_.text.empty();
-    const bool is_number = xml_attribute(attributes, "type").find("nt") != std::string::npos ||
-                           xml_attribute(attributes, "type").find("Float") != std::string::npos;
+    const bool is_number = is_vtp_number(xml_attribute(attributes, "type"));
     array_ = is_space          ? &space_
              : pieces_.empty() ? nullptr
                                : wanted(pieces_.back(), name, is_number);

@@ -134,7 +134,30 @@ std::vector<double> unpack(const std::string& bytes, bool big) {
   return values;
 }
 
+struct Type {
+  std::string_view name;
+  size_t size;
+  std::vector<double> (*unpack)(const std::string& bytes, bool big);
+};
+
+const Type* type_of(std::string_view name) {
+  static constexpr Type kTypes[] = {
+      {"Float32", 4, unpack<float>},   {"Float64", 8, unpack<double>},
+      {"Int64", 8, unpack<int64_t>},   {"Int32", 4, unpack<int32_t>},
+      {"UInt64", 8, unpack<uint64_t>}, {"UInt32", 4, unpack<uint32_t>},
+      {"Int16", 2, unpack<int16_t>},   {"UInt16", 2, unpack<uint16_t>},
+      {"Int8", 1, unpack<int8_t>},     {"UInt8", 1, unpack<uint8_t>}};
+  for (const Type& type : kTypes) {
+    if (type.name == name) return &type;
+  }
+  return nullptr;
+}
+
 }  // namespace
+
+bool is_vtp_number(std::string_view type) {
+  return type_of(type) != nullptr;
+}
 
 std::vector<double> vtp_values(const std::string& path, const VtpEncoding& encoding,
                                const VtpAppended& appended, const VtpArray& array, uint64_t& left) {
@@ -146,22 +169,9 @@ std::vector<double> vtp_values(const std::string& path, const VtpEncoding& encod
   }
   ArrayReader reader(path, encoding, appended, array, left);
   if (array.format != "binary" && array.format != "appended") reader.fail("has an unknown format");
-  using Unpack = std::vector<double> (*)(const std::string&, bool);
-  struct Type {
-    std::string_view name;
-    size_t size;
-    Unpack unpack;
-  };
-  static constexpr Type kTypes[] = {
-      {"Float32", 4, unpack<float>},   {"Float64", 8, unpack<double>},
-      {"Int64", 8, unpack<int64_t>},   {"Int32", 4, unpack<int32_t>},
-      {"UInt64", 8, unpack<uint64_t>}, {"UInt32", 4, unpack<uint32_t>},
-      {"Int16", 2, unpack<int16_t>},   {"UInt16", 2, unpack<uint16_t>},
-      {"Int8", 1, unpack<int8_t>},     {"UInt8", 1, unpack<uint8_t>}};
-  for (const Type& type : kTypes) {
-    if (type.name == array.type) return type.unpack(reader.bytes(type.size), encoding.big_endian);
-  }
-  reader.fail("has an unknown type");
+  const Type* type = type_of(array.type);
+  if (type == nullptr) reader.fail("has an unknown type");
+  return type->unpack(reader.bytes(type->size), encoding.big_endian);
 }
 
 }  // namespace plc::tools

@@ -27,6 +27,9 @@ struct VtpAppended {
   bool base64 = false;
 };
 
+// Whether values of a type are numbers that vtp_values() reads.
+bool is_vtp_number(std::string_view type);
+
 // The values of an array, whatever its type and encoding. `left`: how many bytes of the file arrays
 // may still be made of, counted down: a thousand arrays that share their bytes would make much of
 // little. Throws Failure.
