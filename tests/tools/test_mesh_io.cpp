@@ -541,13 +541,17 @@ TEST_CASE("values of other types are read, colours and what is no number are lef
       "<PointData><DataArray type='String' Name='words' format='ascii'>a b c</DataArray>"
       "<DataArray type='Float32' Name='vectors' NumberOfComponents='2' format='ascii'>"
       "1 2 3 4 5 6</DataArray>"
-      "<DataArray type='UInt8' Name='Label' format='ascii'>1 1 2</DataArray></PointData>";
+      "<DataArray type='UInt8' Name='Label_of_parts' format='ascii'>1 1 2</DataArray></PointData>";
   const TriangleMesh vtp =
-      read_mesh(folder.put("a.vtp", "<VTKFile type='PolyData'><PolyData>" + piece + "</Piece>" +
-                                        piece + values + "</Piece></PolyData></VTKFile>"));
+      read_mesh(folder.put("a.vtp", "<VTKFile type='PolyData'><PolyData>" + piece + values +
+                                        "</Piece></PolyData></VTKFile>"));
   REQUIRE(vtp.scalars.size() == 1);
-  CHECK(vtp.scalars[0].name == "Label");
-  REQUIRE(vtp.scalars[0].values.size() == 6);  // the first piece has none
-  CHECK(std::isnan(vtp.scalars[0].values[2]));
-  CHECK(vtp.scalars[0].values[5] == 2);
+  CHECK(vtp.scalars[0].name == "Label_of_parts");
+  CHECK(vtp.scalars[0].values == std::vector<float>{1, 1, 2});
+  // Of several pieces those that every piece has, as VTK has it.
+  const TriangleMesh pieces =
+      read_mesh(folder.put("b.vtp", "<VTKFile type='PolyData'><PolyData>" + piece + "</Piece>" +
+                                        piece + values + "</Piece></PolyData></VTKFile>"));
+  CHECK(pieces.xyz.size() == 18);
+  CHECK(pieces.scalars.empty());
 }

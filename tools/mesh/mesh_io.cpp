@@ -158,7 +158,7 @@ bool is_scalar_name(std::string_view name) {
   constexpr size_t kLongest = 64;
   return !name.empty() && name.size() <= kLongest &&
          std::all_of(name.begin(), name.end(),
-                     [](unsigned char c) { return std::isalnum(c) != 0; });
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
 bool is_mesh_path(const std::string& path) {

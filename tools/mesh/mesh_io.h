@@ -14,7 +14,7 @@ namespace plc::tools {
 
 // One value per vertex; NaN where there is none.
 struct Scalars {
-  std::string name;  // letters and digits
+  std::string name;  // letters, digits and _
   std::vector<float> values;
   bool are_labels() const { return name == kLabels; }  // of parts, not measures
 
