@@ -46,8 +46,8 @@ class SizeField {
   // The smallest and the largest size asked for, in delta.
   float finest() const { return finest_; }
   float coarsest() const { return coarsest_; }
-  // What the image's noise moves its iso-surface by, standard deviation in delta: that of a voxel over
-  // the gradient there, the median over where the surface passes. 0 where there is none.
+  // What the image's noise moves its iso-surface by, standard deviation in delta: that of a voxel
+  // over the gradient there, the median over where the surface passes. 0 where there is none.
   float noise() const { return noise_; }
   // No size is larger than another by more than this times their distance.
   float slope() const { return slope_; }

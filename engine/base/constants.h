@@ -38,8 +38,8 @@ inline constexpr float kSizedCurvature = 0.175F;
 // the corner. Facets of edges e on a ball of radius R lie e^2 / 8 R inside its corners in the mean,
 // and Laplacians are e^2 / 2 R.
 inline constexpr float kFacets = 0.25F;
-// Of the image's value for a vertex, the most that the mean over the middles of its edges has: noise
-// in it is less. Alone it would not see a vertex that stands out between its neighbours.
+// Of the image's value for a vertex, the most that the mean over the middles of its edges has:
+// noise in it is less. Alone it would not see a vertex that stands out between its neighbours.
 inline constexpr float kStar = 0.75F;
 // alpha_c grows by this part of the model's with the noise of places (SizeField::noise()), up to a
 // noise of kMostNoise.

@@ -164,7 +164,7 @@ void Sleep::observe() {
     for (const uint32_t v : found_[task]) {
       const uint32_t d = mesh_.valence(v);
       for (uint32_t k = 0; k < d; ++k) {
-          set_mark(calm_[mesh_.neighbor(v, k)], 0);
+        set_mark(calm_[mesh_.neighbor(v, k)], 0);
       }
     }
   });
