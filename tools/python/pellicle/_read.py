@@ -30,14 +30,13 @@ _NRRD_TYPES = {
         "f8": "double",
     }.items()
 }
-# Signs of x and y that lead to LPS.
+# Signs of x and y that lead to LPS. LAS is left out: ITK mirrors x there, where it should y, and so does
+# what reads by it.
 _NRRD_SPACES = {
     "left-posterior-superior": (1, 1),
     "lps": (1, 1),
     "right-anterior-superior": (-1, -1),
     "ras": (-1, -1),
-    "left-anterior-superior": (1, -1),
-    "las": (1, -1),
 }
 _META_TYPES = {
     "MET_CHAR": "i1",
