@@ -104,6 +104,16 @@ def test_copies_share_the_surface(surface):
         assert other.levels == surface.levels
 
 
+def test_pickled_surface_of_a_mirrored_image_faces_outward():
+    vertices, faces = octahedron(3)
+    mirror = np.diag([1, 1, -1])
+    before = pellicle.Surface.from_mesh(vertices, faces, direction=mirror)
+    after = pickle.loads(pickle.dumps(before))
+    for space in ("lps", "ras", "voxel"):
+        assert np.array_equal(after.in_space(space).faces, before.in_space(space).faces)
+        assert after.in_space(space).check().valid
+
+
 @pytest.mark.skipif(COMMAND is None, reason="there is no command")
 @pytest.mark.parametrize("suffix", ["ply", "stl", "obj"])
 @pytest.mark.parametrize("space", ["lps", "ras", "voxel"])

@@ -40,8 +40,9 @@ def checked_space(space: Space) -> Space:
 
 
 class _Made(NamedTuple):
-    """How a surface came to be."""
+    """How a surface came to be, and what the engine loses when it makes it again."""
 
+    faces: npt.NDArray[np.uint32]  # of "voxel", in their order
     levels: tuple[LevelReport, ...]
     parameters: Parameters
     seconds: Seconds
@@ -164,7 +165,11 @@ class Surface:
     @property
     def faces(self) -> npt.NDArray[np.uint32]:
         """(m, 3) uint32 indices, counter-clockwise seen from outside in the space."""
-        return self._core.faces(self._space)
+        faces = self._core.faces(self._space)
+        if self._made is None:
+            return faces
+        mirrored = not np.array_equal(faces, self._core.faces("voxel"))
+        return self._made.faces[:, [0, 2, 1] if mirrored else [0, 1, 2]]
 
     @property
     def normals(self) -> npt.NDArray[np.float32]:
@@ -298,11 +303,15 @@ class Surface:
     def _moved(self, indices: npt.NDArray[np.int64], frame: Frame) -> Surface:
         """The surface of a part of an image, whose first voxel has these indices, in the whole."""
         vertices = self._core.positions_f64("voxel") + indices
-        made = _Made(self.levels, self.parameters, self.seconds, self.input_range)
+        made = self._how()
         core = _pellicle.surface_create(
-            self._core.context, "voxel", frame.core(), (vertices, self._core.faces("voxel"))
+            self._core.context, "voxel", frame.core(), (vertices, made.faces)
         )
         return self._of(core, self._space, frame, made)
+
+    def _how(self) -> _Made:
+        faces = self.in_space("voxel").faces
+        return _Made(faces, self.levels, self.parameters, self.seconds, self.input_range)
 
     def __copy__(self) -> Surface:
         return self.in_space(self._space)
@@ -311,10 +320,9 @@ class Surface:
         return self.in_space(self._space)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        made = _Made(self.levels, self.parameters, self.seconds, self.input_range)
         # The engine holds float32 of voxels: these are all bits.
         vertices = self._core.positions("voxel")
-        return _unpickled, (vertices, self._core.faces("voxel"), self._space, self._frame, made)
+        return _unpickled, (vertices, self._space, self._frame, self._how())
 
     def _repr_html_(self) -> str:
         measures = self.measures()
@@ -352,12 +360,8 @@ def _module(name: str) -> ModuleType:
 
 
 def _unpickled(
-    vertices: npt.NDArray[np.float32],
-    faces: npt.NDArray[np.uint32],
-    space: Space,
-    frame: Frame,
-    made: _Made,
+    vertices: npt.NDArray[np.float32], space: Space, frame: Frame, made: _Made
 ) -> Surface:
-    arrays = arrays_of((vertices, faces))
+    arrays = arrays_of((vertices, made.faces))
     core = _pellicle.surface_create(core_of(None), "voxel", frame.core(), arrays)
     return Surface._of(core, space, frame, made)
