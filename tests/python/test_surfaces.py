@@ -66,6 +66,7 @@ def test_signatures_name_every_parameter(function):
     shown = inspect.signature(function).parameters
     assert {"curvature", "tolerance", "max_iterations"} <= shown.keys()
     assert shown["curvature"].default == pellicle.Parameters().curvature
+    assert ("levels" in shown) == (function is not pellicle.extract_labels)
     assert not any(name.startswith("_") or name == "changes" for name in shown)
 
 
@@ -216,11 +217,29 @@ def test_notebooks_show_a_picture_without_holes(spacing):
     assert "mm\u00b2" in html
 
 
-def test_pictures_are_seen_from_the_front():
-    """The side that faces the light's side is brighter, and what is in front hides the rest."""
-    values = np.zeros((24, 24, 24), np.float32)
-    values[2:8, 2:8, 2:8] = 1  # [z, y, x]: low, in front, to the right of the patient
-    values[2:22, 14:22, 2:22] = 1  # behind
-    picture = pixels(pellicle.extract(values, 0.5, space="lps")._repr_html_())
-    ras = pixels(pellicle.extract(values, 0.5, space="ras")._repr_html_())
-    assert np.abs(picture.astype(int) - ras).mean() < 3  # the same picture in both
+def test_pictures_show_a_patient_from_the_front():
+    """The head is up, and the right hand on the left, in LPS and in RAS."""
+    values = np.zeros((24, 24, 24), np.float32)  # [z, y, x]
+    values[2:22, 8:14, 16:22] = 1  # upright, on the patient's left
+    values[2:8, 8:14, 2:22] = 1  # a foot to the right
+    surface = pellicle.extract(values, 0.5)
+    for space in ("lps", "ras"):
+        seen = pixels(surface.in_space(space)._repr_html_())[..., 3] > 0
+        half = len(seen) // 2
+        assert seen[:half, half:].mean() > 0.3 and seen[half:, :half].mean() > 0.2
+        assert seen[: half // 2, :half].mean() < 0.05
+
+
+def test_mesh_is_a_start_or_how_fine_the_surface_is():
+    image = ball(32, 11)
+    uniform = pellicle.extract(image, 0.5, mesh="uniform")
+    adaptive = pellicle.extract(image, 0.5, mesh="adaptive", tolerance=0.3)
+    assert uniform.hash == pellicle.extract(image, 0.5).hash
+    assert adaptive.parameters.mesh == "adaptive" and adaptive.vertex_count < uniform.vertex_count
+    pyramid = pellicle.Pyramid(pellicle.Volume(image), 0.5, mesh="adaptive", tolerance=0.3)
+    run = pellicle.Run(pyramid, mesh="adaptive")
+    assert run.finish().hash == adaptive.hash
+    with pytest.raises(ValueError, match="mesh"):
+        pellicle.extract(image, 0.5, mesh="adaptve")
+    parts = pellicle.extract_labels(image > 0.5, mesh="adaptive", tolerance=0.3)
+    assert parts[1].parameters.mesh == "adaptive"

@@ -47,6 +47,8 @@ def sample(image: npt.NDArray[np.int16]) -> npt.NDArray[np.float32]:
     print(threshold, surface.area + surface.volume, surface.bounds, surface.components[0].area)
     pellicle.Run(pellicle.Pyramid(pellicle.Volume(image), 100, levels=2), iso=100, spring=0.1)
 
+    pellicle.extract(image, 100, mesh="adaptive", tolerance=0.1)
+    pellicle.extract(image, 100, mesh="adaptve")  # type: ignore[arg-type]
     pellicle.extract(image, 100, curvture=1)  # type: ignore[call-arg]
     pellicle.extract(image, 100, curvature="much")  # type: ignore[arg-type]
     pellicle.extract(image, 100, force="isso")  # type: ignore[arg-type]

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Unpack
+from typing import Any, Literal, Unpack
 
 import numpy.typing as npt
 
 from . import _pellicle
 from ._changes import CommonChanges
 from ._context import Context, core_of
-from ._extras import Extras, ForceFunction, LevelFunction, ProgressFunction
+from ._extras import Extras, ForceFunction, LevelFunction, ProgressFunction, mesh_of
 from ._images import Image, Order, Vector, located
 from ._meshes import MeshLike
 from ._parameters import Parameters, fields_of, told
@@ -18,7 +18,7 @@ from ._steps import chosen
 from ._surface import Surface
 
 
-@told
+@told()
 def extract(
     image: npt.ArrayLike | Image,
     iso: float | None = None,
@@ -30,7 +30,7 @@ def extract(
     space: Space = "lps",
     seeds: npt.ArrayLike | None = None,
     mask: npt.ArrayLike | None = None,
-    mesh: MeshLike | None = None,
+    mesh: MeshLike | Literal["uniform", "adaptive"] | None = None,
     attachments: npt.ArrayLike | None = None,
     pins: npt.ArrayLike | None = None,
     extra_force: ForceFunction | None = None,
@@ -71,7 +71,8 @@ def extract(
     mask : array_like, optional
         An array of the image's shape and order; the start is the surface of where it is not 0.
     mesh : Surface or (vertices, faces), optional
-        Closed, oriented and free of self-intersections, to start from.
+        Closed, oriented and free of self-intersections, to start from. "uniform" and "adaptive" are
+        the parameter of that name: how fine the surface is.
     attachments : array_like, optional
         Rows of x, y, z, radius[, strength]: places in the image that draw the surface near them until it goes
         through them. The strength is relative to `attraction`, 1 where it is left out.
@@ -120,6 +121,7 @@ def extract(
     >>> surface.check().valid, surface.measures().genus
     (True, 0)
     """
+    fields, start = mesh_of(mesh, {**changes})
     voxels, frame = located(image, order, spacing, origin, direction)
     extras = Extras(
         frame=frame,
@@ -127,15 +129,15 @@ def extract(
         space=space,
         seeds=seeds,
         mask=mask,
-        mesh=mesh,
+        mesh=start,
         attachments=attachments,
         pins=pins,
         extra_force=extra_force,
         progress=progress,
         level=level,
     )
-    given: dict[str, Any] = {**changes, "iso": iso} if iso is not None else {**changes}
-    wanted = extras.start(chosen(parameters, iso, {**changes}), given)
+    given: dict[str, Any] = {**fields, "iso": iso} if iso is not None else fields
+    wanted = extras.start(chosen(parameters, iso, fields), given)
     core = _pellicle.extract(
         core_of(context),
         voxels,

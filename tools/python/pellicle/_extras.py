@@ -80,6 +80,15 @@ class Extras:
         return parameters
 
 
+def mesh_of(
+    mesh: MeshLike | str | None, fields: dict[str, Any]
+) -> tuple[dict[str, Any], MeshLike | None]:
+    """Parameters and start of an argument `mesh`, which may be the parameter or the start."""
+    if isinstance(mesh, str):
+        return {**fields, "mesh": mesh}, None
+    return fields, mesh
+
+
 def _rows(values: npt.ArrayLike | None, name: str, columns: int) -> _pellicle.Rows | None:
     if values is None:
         return None

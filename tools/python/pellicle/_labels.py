@@ -10,7 +10,7 @@ from typing import Any, Unpack
 import numpy as np
 import numpy.typing as npt
 
-from ._changes import CommonChanges
+from ._changes import PyramidChanges
 from ._context import Context
 from ._errors import InvalidData
 from ._extract import extract
@@ -26,14 +26,14 @@ _INSIDE = 255
 _TRIES = [(0.25, 1.0), (0.35, 1.0), (0.45, 1.0), (0.45, 0.5), (0.45, 0.25), (0.45, 0.0)]
 # Parameters that the labels tell, and those that have no sense for them.
 _TAKEN = {
-    *("window_low", "window_high", "pad_value", "levels", "init", "late_bubbles"),
+    *("iso", "window_low", "window_high", "pad_value", "levels", "init", "late_bubbles"),
     *("inside_below", "level_iso", "feature", "feature_sigma", "reduction", "bubbles", "force"),
 }
 
 _logger = logging.getLogger("pellicle")
 
 
-@told
+@told(without=_TAKEN)
 def extract_labels(
     image: npt.ArrayLike | Image,
     *,
@@ -43,7 +43,7 @@ def extract_labels(
     order: Order = "zyx",
     space: Space = "lps",
     context: Context | None = None,
-    **changes: Unpack[CommonChanges],
+    **changes: Unpack[PyramidChanges],
 ) -> dict[int, Surface]:
     """Extracts a surface of each label of a label image; no two of them overlap.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar, Unpack
 
@@ -154,24 +154,28 @@ def fields_of(parameters: Parameters) -> dict[str, Any]:
     return {name: getattr(parameters, name) for name in _D}
 
 
-def told(function: T) -> T:
-    """The function, whose signature names each parameter in place of ``**changes``.
+def told(without: Collection[str] = ()) -> Callable[[T], T]:
+    """A decorator: the signature names each parameter, but for some, in place of ``**changes``.
 
     For what looks when the program runs: `help`, and completion in IPython and Jupyter.
     """
-    signature = inspect.signature(function)
-    before = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
-    taken = {p.name for p in before}
-    fields = [
-        inspect.Parameter(
-            name,
-            inspect.Parameter.KEYWORD_ONLY,
-            default=getattr(Parameters, name),
-            annotation=annotation,
-        )
-        for name, annotation in Parameters.__annotations__.items()
-        if name not in taken
-    ]
-    shown = [p for p in before if not p.name.startswith("_")] + fields
-    function.__signature__ = signature.replace(parameters=shown)  # type: ignore[attr-defined]
-    return function
+
+    def decorated(function: T) -> T:
+        signature = inspect.signature(function)
+        before = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
+        taken = {p.name for p in before}
+        fields = [
+            inspect.Parameter(
+                name,
+                inspect.Parameter.KEYWORD_ONLY,
+                default=getattr(Parameters, name),
+                annotation=annotation,
+            )
+            for name, annotation in Parameters.__annotations__.items()
+            if name not in taken and name not in without
+        ]
+        shown = [p for p in before if not p.name.startswith("_")] + fields
+        function.__signature__ = signature.replace(parameters=shown)  # type: ignore[attr-defined]
+        return function
+
+    return decorated

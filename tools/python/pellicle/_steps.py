@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from typing import Any, Unpack
+from typing import Any, Literal, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,7 @@ from . import _pellicle
 from ._changes import PyramidChanges, RunChanges
 from ._context import Context, core_of
 from ._errors import InvalidArgument
-from ._extras import Extras, ForceFunction, LevelFunction, ProgressFunction
+from ._extras import Extras, ForceFunction, LevelFunction, ProgressFunction, mesh_of
 from ._images import Image, Order, Vector, located
 from ._meshes import MeshLike
 from ._parameters import Parameters, fields_of, told
@@ -115,7 +115,7 @@ class Pyramid:
         For voxels that are NaN or infinite, or an image too small for the levels.
     """
 
-    @told
+    @told()
     def __init__(
         self,
         volume: Volume,
@@ -178,7 +178,7 @@ class Run:
         Fields of `Parameters` by name.
     """
 
-    @told
+    @told()
     def __init__(
         self,
         pyramid: Pyramid,
@@ -187,7 +187,7 @@ class Run:
         space: Space = "lps",
         seeds: npt.ArrayLike | None = None,
         mask: npt.ArrayLike | None = None,
-        mesh: MeshLike | None = None,
+        mesh: MeshLike | Literal["uniform", "adaptive"] | None = None,
         attachments: npt.ArrayLike | None = None,
         pins: npt.ArrayLike | None = None,
         extra_force: ForceFunction | None = None,
@@ -200,13 +200,14 @@ class Run:
         if not isinstance(pyramid, Pyramid):
             raise TypeError(f"pyramid: must be a Pyramid, not {type(pyramid).__name__}")
         self._frame = pyramid._frame
+        fields, start = mesh_of(mesh, {**changes})
         extras = Extras(
             frame=self._frame,
             order=pyramid._order,
             space=space,
             seeds=seeds,
             mask=mask,
-            mesh=mesh,
+            mesh=start,
             attachments=attachments,
             pins=pins,
             extra_force=extra_force,
@@ -215,7 +216,7 @@ class Run:
         )
         if parameters is None:
             parameters = pyramid.parameters
-        wanted = extras.start(parameters.replace(**changes), {**changes})
+        wanted = extras.start(parameters.replace(**fields), fields)
         core = pyramid._core.context if context is None else core_of(context)
         self._space = space
         self._callbacks = extras.callbacks()
