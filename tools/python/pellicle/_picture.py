@@ -42,7 +42,8 @@ def picture(vertices: Points, faces: npt.NDArray[np.uint32], space: Space) -> by
     corners = places[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
-    shades = np.clip(normals @ (_LIGHT / np.linalg.norm(_LIGHT)) / np.maximum(lengths, 1e-300), 0, 1)
+    light = _LIGHT / np.linalg.norm(_LIGHT)
+    shades = np.clip(normals @ light / np.maximum(lengths, 1e-300), 0, 1)
 
     seen = normals[:, 2] > 0
     extent = np.ptp(corners[:, :, :2], axis=1).max(axis=1)
@@ -63,8 +64,8 @@ def picture(vertices: Points, faces: npt.NDArray[np.uint32], space: Space) -> by
     image = np.zeros((_SIZE * _SIZE, 4), np.uint8)
     if depth:
         order = np.argsort(np.concatenate(depth), kind="stable")  # the nearest is written last
-        at, light = np.concatenate(pixel)[order], np.concatenate(shade)[order]
-        image[at, :3] = (_COLOUR * (0.25 + 0.75 * light[:, np.newaxis])).astype(np.uint8)
+        at, lit = np.concatenate(pixel)[order], np.concatenate(shade)[order]
+        image[at, :3] = (_COLOUR * (0.25 + 0.75 * lit[:, np.newaxis])).astype(np.uint8)
         image[at, 3] = 255
     return _png(image.reshape(_SIZE, _SIZE, 4))
 

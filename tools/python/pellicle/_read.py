@@ -30,8 +30,8 @@ _NRRD_TYPES = {
         "f8": "double",
     }.items()
 }
-# Signs of x and y that lead to LPS. LAS is left out: ITK mirrors x there, where it should y, and so does
-# what reads by it.
+# Signs of x and y that lead to LPS. LAS is left out: where it means y, ITK
+# mirrors x, and so does what reads by it.
 _NRRD_SPACES = {
     "left-posterior-superior": (1, 1),
     "lps": (1, 1),
@@ -175,7 +175,8 @@ def _meta(file: Path) -> Image:
             fields[name.strip()] = value.strip()
         body = stream.read()
     _three_axes(file, int(fields["NDims"]))
-    for name, plain in (("ElementNumberOfChannels", "1"), ("BinaryData", "True"), ("HeaderSize", "0")):
+    known = {"ElementNumberOfChannels": "1", "BinaryData": "True", "HeaderSize": "0"}
+    for name, plain in known.items():
         if fields.get(name, plain).lower() != plain.lower():
             raise InvalidData(f"{file}: read does not know {name} = {fields[name]}")
     if fields["ElementType"] not in _META_TYPES:

@@ -55,8 +55,8 @@ class Surface:
     Coordinates are x, y, z in `space`: "lps" (mm, as ITK), "ras" (mm, as nibabel) or "voxel"
     (indices of the input image). Arrays are new at each access, filled by the engine and the
     caller's to change: keep them where they are used more than once. Surfaces do not change: a copy
-    shares what it is made of. A pickled one comes back as the same bits, with a context of its own, but
-    without `frozen_sites` and the scalar "movement".
+    shares what it is made of. A pickled one comes back as the same bits, with a context of its own,
+    but without `frozen_sites` and the scalar "movement".
     """
 
     def __init__(self) -> None:
