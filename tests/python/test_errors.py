@@ -11,6 +11,7 @@ import subprocess
 import sys
 import typing
 
+import nibabel
 import numpy as np
 import pytest
 from scenes import ball, octahedron, pill
@@ -288,4 +289,9 @@ def test_the_examples_of_the_documentation_run(tmp_path):
     readme = pathlib.Path(os.environ["PELLICLE_SOURCE"]) / "tools/python/README.md"
     blocks = re.findall(r"```python\n(.*?)```", readme.read_text(), re.S)
     assert blocks
+    nibabel.save(nibabel.Nifti1Image(ball(40, 12) * 400, np.eye(4)), tmp_path / "head.nii.gz")
+    atlas = np.zeros((30, 30, 30), np.int16)
+    atlas[4:24, 4:24, 4:14], atlas[4:24, 4:24, 14:24] = 1, 2
+    nibabel.save(nibabel.Nifti1Image(atlas, np.eye(4)), tmp_path / "atlas.nii.gz")
     subprocess.run([sys.executable, "-c", "\n".join(blocks)], cwd=tmp_path, check=True)
+    assert (tmp_path / "skin.stl").exists()

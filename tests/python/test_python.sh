@@ -42,6 +42,7 @@ cd "$dir"
   "$root/tests/python"
 
 # The types of the package, and of a program that uses it.
-mypy=("$python" -m mypy --strict --python-executable "$dir/venv/bin/python" --cache-dir "$dir/mypy")
+mypy=("$python" -m mypy --strict --python-executable "$dir/venv/bin/python" --cache-dir "$dir/mypy"
+  --enable-incomplete-feature=Unpack)  # complete from mypy 1.7 on
 "${mypy[@]}" -p pellicle
 "${mypy[@]}" "$root/tests/python/typed_sample.py"

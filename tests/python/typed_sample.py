@@ -40,6 +40,21 @@ def sample(image: npt.NDArray[np.int16]) -> npt.NDArray[np.float32]:
     vertex: int | None = pellicle.nearest_vertex(surface, [0, 0, 0])
     print(state, done, area, vertex, surface.hash + 1)
 
+    image_of_file: pellicle.Image = pellicle.read("head.nii.gz")
+    threshold: float = pellicle.threshold_otsu(image_of_file)
+    surfaces: dict[int, pellicle.Surface] = pellicle.extract_labels(image_of_file, curvature=0.1)
+    surfaces[1].save("one.ply")
+    print(threshold, surface.area + surface.volume, surface.bounds, surface.components[0].area)
+    pellicle.Run(pellicle.Pyramid(pellicle.Volume(image), 100, levels=2), iso=100, spring=0.1)
+
+    pellicle.extract(image, 100, mesh="adaptive", tolerance=0.1)
+    pellicle.extract(image, 100, mesh="adaptve")  # type: ignore[arg-type]
+    pellicle.extract(image, 100, curvture=1)  # type: ignore[call-arg]
+    pellicle.extract(image, 100, curvature="much")  # type: ignore[arg-type]
+    pellicle.extract(image, 100, force="isso")  # type: ignore[arg-type]
+    pellicle.extract_labels(image, curvture=1)  # type: ignore[call-arg]
+    pellicle.Pyramid(pellicle.Volume(image), 100, levls=2)  # type: ignore[call-arg]
+    pellicle.Parameters().replace(curvture=1)  # type: ignore[call-arg]
     pellicle.Parameters(init="bubbel")  # type: ignore[arg-type]
     pellicle.Parameters(curvatur=1)  # type: ignore[call-arg]
     pellicle.extract(image, 100, order="xzy")  # type: ignore[arg-type]

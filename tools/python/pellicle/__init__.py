@@ -1,6 +1,7 @@
 """Closed, oriented, non-self-intersecting triangulated surfaces from 3D images.
 
-``extract`` makes a surface of an image in one call; ``Volume``, ``Pyramid`` and ``Run`` make it in
+``read`` reads an image and ``extract`` makes a surface of it in one call, ``extract_labels`` one of
+each label; ``Volume``, ``Pyramid`` and ``Run`` make it in
 steps of any size. ``check_mesh``, ``component_measures``, ``curvature``, ``geodesic``, ``distance``
 and ``nearest_vertex`` measure any mesh. Images are arrays indexed [z, y, x], or [x, y, z] with
 ``order="xyz"``; coordinates, spacing and all other triples are x, y, z.
@@ -16,7 +17,8 @@ from ._errors import (
     PellicleError,
 )
 from ._extract import extract
-from ._images import Geometry, Order, geometry_from_affine
+from ._images import Geometry, Image, Order, geometry_from_affine
+from ._labels import extract_labels
 from ._meshes import (
     check_mesh,
     component_measures,
@@ -27,6 +29,7 @@ from ._meshes import (
 )
 from ._parameters import Parameters
 from ._pellicle import version
+from ._read import read
 from ._records import (
     Check,
     ComponentMeasures,
@@ -48,6 +51,7 @@ from ._records import (
 )
 from ._steps import Pyramid, Run, Volume
 from ._surface import Surface
+from ._threshold import threshold_otsu
 
 __version__ = version()
 
@@ -61,6 +65,7 @@ __all__ = [
     "Distances",
     "ForcePoints",
     "Geometry",
+    "Image",
     "InternalError",
     "InvalidArgument",
     "InvalidData",
@@ -88,8 +93,11 @@ __all__ = [
     "curvature",
     "distance",
     "extract",
+    "extract_labels",
     "geodesic",
     "geometry_from_affine",
     "nearest_vertex",
+    "read",
+    "threshold_otsu",
     "version",
 ]

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal, Unpack
 
 import numpy.typing as npt
 
 from . import _pellicle
+from ._changes import CommonChanges
 from ._context import Context, core_of
-from ._extras import Extras, ForceFunction, LevelFunction, ProgressFunction
-from ._images import Order, Vector, geometry_of, voxels_of
+from ._extras import Extras, ForceFunction, LevelFunction, ProgressFunction, mesh_of
+from ._images import Image, Order, Vector, located
 from ._meshes import MeshLike
-from ._parameters import Parameters, fields_of
+from ._parameters import Parameters, fields_of, told
 from ._records import Space
 from ._steps import chosen
 from ._surface import Surface
 
 
+@told()
 def extract(
-    image: npt.ArrayLike,
+    image: npt.ArrayLike | Image,
     iso: float | None = None,
     *,
     spacing: Vector = (1, 1, 1),
@@ -28,7 +30,7 @@ def extract(
     space: Space = "lps",
     seeds: npt.ArrayLike | None = None,
     mask: npt.ArrayLike | None = None,
-    mesh: MeshLike | None = None,
+    mesh: MeshLike | Literal["uniform", "adaptive"] | None = None,
     attachments: npt.ArrayLike | None = None,
     pins: npt.ArrayLike | None = None,
     extra_force: ForceFunction | None = None,
@@ -36,7 +38,7 @@ def extract(
     level: LevelFunction | None = None,
     context: Context | None = None,
     parameters: Parameters | None = None,
-    **changes: Any,
+    **changes: Unpack[CommonChanges],
 ) -> Surface:
     """Extracts a closed, oriented surface without self-intersections from a 3D image.
 
@@ -44,8 +46,8 @@ def extract(
 
     Parameters
     ----------
-    image : array_like
-        Three axes, no masked elements. uint8, int16, uint16, int32 and float32 are taken as they are, without a copy
+    image : array_like or Image
+        An `Image` of `read`, which tells its geometry; or an array. Three axes, no masked elements. uint8, int16, uint16, int32 and float32 are taken as they are, without a copy
         where x is fastest in memory; bool, int8, uint32, int64, uint64 and float16 are converted
         where no value changes, else refused; float64 is rounded to float32. It must not change
         during the call.
@@ -69,7 +71,8 @@ def extract(
     mask : array_like, optional
         An array of the image's shape and order; the start is the surface of where it is not 0.
     mesh : Surface or (vertices, faces), optional
-        Closed, oriented and free of self-intersections, to start from.
+        Closed, oriented and free of self-intersections, to start from. "uniform" and "adaptive" are
+        the parameter of that name: how fine the surface is.
     attachments : array_like, optional
         Rows of x, y, z, radius[, strength]: places in the image that draw the surface near them until it goes
         through them. The strength is relative to `attraction`, 1 where it is left out.
@@ -118,25 +121,28 @@ def extract(
     >>> surface.check().valid, surface.measures().genus
     (True, 0)
     """
+    fields, start = mesh_of(mesh, {**changes})
+    voxels, frame = located(image, order, spacing, origin, direction)
     extras = Extras(
+        frame=frame,
         order=order,
         space=space,
         seeds=seeds,
         mask=mask,
-        mesh=mesh,
+        mesh=start,
         attachments=attachments,
         pins=pins,
         extra_force=extra_force,
         progress=progress,
         level=level,
     )
-    given = {**changes, "iso": iso} if iso is not None else changes
-    wanted = extras.start(chosen(parameters, iso, changes), given)
+    given: dict[str, Any] = {**fields, "iso": iso} if iso is not None else fields
+    wanted = extras.start(chosen(parameters, iso, fields), given)
     core = _pellicle.extract(
         core_of(context),
-        voxels_of(image, order),
-        geometry_of(spacing, origin, direction),
+        voxels,
+        frame.core(),
         fields_of(wanted),
         extras.core(),
     )
-    return Surface._of(core, space)
+    return Surface._of(core, space, frame)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _pellicle
-from ._images import Order, voxels_of
+from ._images import Frame, Order, voxels_of
 from ._meshes import MeshLike, arrays_of
 from ._parameters import Parameters
 from ._records import ForcePoints, LevelReport, Progress, Space, Verdict
@@ -29,6 +29,7 @@ _VERDICTS = {word: value for value, word in enumerate(get_args(Verdict))}
 class Extras:
     """What `extract` and `Run` take beside images and parameters, as it was given."""
 
+    frame: Frame
     order: Order
     space: Space = "lps"
     seeds: npt.ArrayLike | None = None
@@ -60,7 +61,7 @@ class Extras:
         """The user's, for the engine's records."""
         return (
             None if self.progress is None else _progress(self.progress),
-            None if self.level is None else _level(self.level, self.space),
+            None if self.level is None else _level(self.level, self.space, self.frame),
             None if self.extra_force is None else _force(self.extra_force),
         )
 
@@ -72,11 +73,20 @@ class Extras:
         starts = [name for name in ("seeds", "mask", "mesh") if getattr(self, name) is not None]
         implied = starts or [name for name in ("bubbles",) if name in given]
         if "init" not in given and parameters.init == Parameters.init and len(implied) == 1:
-            parameters = parameters.replace(init=implied[0])
+            parameters = parameters.replace(init=implied[0])  # type: ignore[arg-type]
         for name in starts:
             if parameters.init != name:
                 raise ValueError(f"{name} are for init={name!r}, not for {parameters.init!r}")
         return parameters
+
+
+def mesh_of(
+    mesh: MeshLike | str | None, fields: dict[str, Any]
+) -> tuple[dict[str, Any], MeshLike | None]:
+    """Parameters and start of an argument `mesh`, which may be the parameter or the start."""
+    if isinstance(mesh, str):
+        return {**fields, "mesh": mesh}, None
+    return fields, mesh
 
 
 def _rows(values: npt.ArrayLike | None, name: str, columns: int) -> _pellicle.Rows | None:
@@ -118,12 +128,12 @@ def _progress(function: ProgressFunction) -> Callable[[dict[str, Any]], None]:
 
 
 def _level(
-    function: LevelFunction, space: Space
+    function: LevelFunction, space: Space, frame: Frame
 ) -> Callable[[dict[str, Any], _pellicle.Surface], int]:
     _callable(function, "level")
 
     def call(fields: dict[str, Any], surface: _pellicle.Surface) -> int:
-        answer = function(LevelReport(**fields), Surface._of(surface, space))
+        answer = function(LevelReport(**fields), Surface._of(surface, space, frame))
         verdict = _VERDICTS.get(answer if answer is not None else "accept")
         if verdict is None:
             raise ValueError(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal, TypedDict
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -66,16 +67,63 @@ def _triple(name: str, values: Vector) -> Triple:
     return (float(array[0]), float(array[1]), float(array[2]))
 
 
-def geometry_of(
-    spacing: Vector, origin: Vector, direction: npt.ArrayLike | None
-) -> _pellicle.Geometry:
-    """As the engine takes it."""
+class Frame(NamedTuple):
+    """Where an image lies, as numbers that can be kept."""
+
+    spacing: Triple
+    origin: Triple
+    direction: tuple[float, ...]  # row by row
+
+    def core(self) -> _pellicle.Geometry:
+        """As the engine takes it."""
+        return _pellicle.Geometry(*self)
+
+
+def frame_of(spacing: Vector, origin: Vector, direction: npt.ArrayLike | None) -> Frame:
+    """Of what a caller gives."""
     axes = real_array(_IDENTITY if direction is None else direction, "direction")
     if axes.shape not in ((3, 3), (9,)):
         raise ValueError("direction: must be 3 x 3, or its nine numbers row by row")
-    return _pellicle.Geometry(
-        _triple("spacing", spacing), _triple("origin", origin), axes.ravel().tolist()
+    return Frame(
+        _triple("spacing", spacing), _triple("origin", origin), tuple(axes.ravel().tolist())
     )
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """An image and where it lies, as `read` gives it. Functions take it in place of an array.
+
+    Attributes
+    ----------
+    values : numpy.ndarray
+        Indexed [z, y, x].
+    geometry : Geometry
+        ``spacing``, ``origin`` and ``direction`` in LPS and mm, for ``**image.geometry``.
+    """
+
+    values: npt.NDArray[Any]
+    geometry: Geometry
+
+    def __repr__(self) -> str:
+        size = " x ".join(str(n) for n in reversed(self.values.shape))
+        spacing = " x ".join(f"{mm:.4g}" for mm in self.geometry["spacing"])
+        return f"<pellicle.Image of {size} voxels of {self.values.dtype}, {spacing} mm>"
+
+
+def located(
+    image: npt.ArrayLike | Image,
+    order: Order,
+    spacing: Vector,
+    origin: Vector,
+    direction: npt.ArrayLike | None,
+) -> tuple[npt.NDArray[Any], Frame]:
+    """An image's voxels indexed [x, y, z], and where they lie."""
+    frame = frame_of(spacing, origin, direction)
+    if isinstance(image, Image):
+        if frame != frame_of((1, 1, 1), (0, 0, 0), None) or order != "zyx":
+            raise TypeError("an Image tells its order and geometry: give image.values with others")
+        return voxels_of(image.values, "zyx"), frame_of(**image.geometry)
+    return voxels_of(image, order), frame
 
 
 def voxels_of(image: npt.ArrayLike, order: Order, name: str = "image") -> npt.NDArray[Any]:

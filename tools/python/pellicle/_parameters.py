@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import inspect
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar, Unpack
 
 from . import _pellicle
+from ._changes import Changes
+
+T = TypeVar("T", bound=Callable[..., Any])
 
 # The only place of the defaults is the engine.
 _D: dict[str, Any] = _pellicle.parameter_defaults()
@@ -128,7 +133,7 @@ class Parameters:
     late_bubbles: bool = _D["late_bubbles"]
     sleeping: bool = _D["sleeping"]
 
-    def replace(self, **changes: Any) -> Parameters:
+    def replace(self, **changes: Unpack[Changes]) -> Parameters:
         """These parameters but for some.
 
         Raises
@@ -147,3 +152,30 @@ class Parameters:
 def fields_of(parameters: Parameters) -> dict[str, Any]:
     """As the engine takes them."""
     return {name: getattr(parameters, name) for name in _D}
+
+
+def told(without: Collection[str] = ()) -> Callable[[T], T]:
+    """A decorator: the signature names each parameter, but for some, in place of ``**changes``.
+
+    For what looks when the program runs: `help`, and completion in IPython and Jupyter.
+    """
+
+    def decorated(function: T) -> T:
+        signature = inspect.signature(function)
+        before = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
+        taken = {p.name for p in before}
+        fields = [
+            inspect.Parameter(
+                name,
+                inspect.Parameter.KEYWORD_ONLY,
+                default=getattr(Parameters, name),
+                annotation=annotation,
+            )
+            for name, annotation in Parameters.__annotations__.items()
+            if name not in taken and name not in without
+        ]
+        shown = [p for p in before if not p.name.startswith("_")] + fields
+        function.__signature__ = signature.replace(parameters=shown)  # type: ignore[attr-defined]
+        return function
+
+    return decorated

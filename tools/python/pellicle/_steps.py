@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from typing import Any
+from typing import Any, Literal, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _pellicle
+from ._changes import PyramidChanges, RunChanges
 from ._context import Context, core_of
 from ._errors import InvalidArgument
-from ._extras import Extras, ForceFunction, LevelFunction, ProgressFunction
-from ._images import Order, Vector, geometry_of, voxels_of
+from ._extras import Extras, ForceFunction, LevelFunction, ProgressFunction, mesh_of
+from ._images import Image, Order, Vector, located
 from ._meshes import MeshLike
-from ._parameters import Parameters, fields_of
+from ._parameters import Parameters, fields_of, told
 from ._records import Progress, PyramidLevel, Range, Space
 from ._surface import Surface
 from ._values import integer
@@ -46,7 +47,7 @@ class Volume:
 
     def __init__(
         self,
-        image: npt.ArrayLike,
+        image: npt.ArrayLike | Image,
         *,
         spacing: Vector = (1, 1, 1),
         origin: Vector = (0, 0, 0),
@@ -55,12 +56,14 @@ class Volume:
         copy: bool = False,
         context: Context | None = None,
     ) -> None:
-        voxels = voxels_of(image, order)
-        geometry = geometry_of(spacing, origin, direction)
+        voxels, self._frame = located(image, order, spacing, origin, direction)
         self._order = order
-        self._core = _pellicle.volume_create(core_of(context), voxels, geometry, not copy)
-        self._borrowed = isinstance(image, np.ndarray) and np.shares_memory(
-            image, self._core.voxels(), max_work=1
+        self._core = _pellicle.volume_create(
+            core_of(context), voxels, self._frame.core(), not copy
+        )
+        given = image.values if isinstance(image, Image) else image
+        self._borrowed = isinstance(given, np.ndarray) and np.shares_memory(
+            given, self._core.voxels(), max_work=1
         )
 
     @property
@@ -112,6 +115,7 @@ class Pyramid:
         For voxels that are NaN or infinite, or an image too small for the levels.
     """
 
+    @told()
     def __init__(
         self,
         volume: Volume,
@@ -119,13 +123,14 @@ class Pyramid:
         *,
         parameters: Parameters | None = None,
         context: Context | None = None,
-        **changes: Any,
+        **changes: Unpack[PyramidChanges],
     ) -> None:
         if not isinstance(volume, Volume):
             raise TypeError(f"volume: must be a Volume, not {type(volume).__name__}")
-        wanted = chosen(parameters, iso, changes)
+        wanted = chosen(parameters, iso, {**changes})
         core = volume._core.context if context is None else core_of(context)
         self._order = volume._order
+        self._frame = volume._frame
         self._core = _pellicle.pyramid_create(core, volume._core, fields_of(wanted))
 
     @property
@@ -173,6 +178,7 @@ class Run:
         Fields of `Parameters` by name.
     """
 
+    @told()
     def __init__(
         self,
         pyramid: Pyramid,
@@ -181,7 +187,7 @@ class Run:
         space: Space = "lps",
         seeds: npt.ArrayLike | None = None,
         mask: npt.ArrayLike | None = None,
-        mesh: MeshLike | None = None,
+        mesh: MeshLike | Literal["uniform", "adaptive"] | None = None,
         attachments: npt.ArrayLike | None = None,
         pins: npt.ArrayLike | None = None,
         extra_force: ForceFunction | None = None,
@@ -189,16 +195,19 @@ class Run:
         level: LevelFunction | None = None,
         context: Context | None = None,
         _state: bytes | None = None,
-        **changes: Any,
+        **changes: Unpack[RunChanges],
     ) -> None:
         if not isinstance(pyramid, Pyramid):
             raise TypeError(f"pyramid: must be a Pyramid, not {type(pyramid).__name__}")
+        self._frame = pyramid._frame
+        fields, start = mesh_of(mesh, {**changes})
         extras = Extras(
+            frame=self._frame,
             order=pyramid._order,
             space=space,
             seeds=seeds,
             mask=mask,
-            mesh=mesh,
+            mesh=start,
             attachments=attachments,
             pins=pins,
             extra_force=extra_force,
@@ -207,7 +216,7 @@ class Run:
         )
         if parameters is None:
             parameters = pyramid.parameters
-        wanted = extras.start(parameters.replace(**changes), changes)
+        wanted = extras.start(parameters.replace(**fields), fields)
         core = pyramid._core.context if context is None else core_of(context)
         self._space = space
         self._callbacks = extras.callbacks()
@@ -289,7 +298,7 @@ class Run:
 
     def surface(self) -> Surface:
         """The surface as it is now, a copy: valid after every iteration."""
-        return Surface._of(self._core.surface(), self._space)
+        return Surface._of(self._core.surface(), self._space, self._frame)
 
     def save(self) -> bytes:
         """The state between two iterations, for `restore`: without image and callbacks."""
