@@ -21,11 +21,11 @@
  * to it, nor leave it by an exception or longjmp. Callbacks can stop what evolves a surface; making
  * volumes, pyramids, runs and surfaces, and checking and measuring, cannot be stopped.
  *
- * Structs start with struct_size: fill them with their _defaults function, then change fields. For
- * structs that are only written set struct_size = sizeof. A library newer than the header that a
- * host was built with takes what it does not get at its default; one that is older refuses the
- * struct with PLC_INVALID_ARGUMENT. Structs within others and in arrays will not grow:
- * plc_measures, plc_progress, plc_component_measures, plc_seed, plc_attachment, plc_pin.
+ * Structs start with struct_size: fill them with their _defaults function, then change fields. Of
+ * structs that are only written it sets struct_size = sizeof, and all else to 0. A library newer
+ * than the header that a host was built with takes what it does not get at its default; one that is
+ * older refuses the struct with PLC_INVALID_ARGUMENT. Structs within others and in arrays will not
+ * grow: plc_measures, plc_progress, plc_component_measures, plc_seed, plc_attachment, plc_pin.
  *
  * Handles are freed with their _destroy function, which takes NULL, in any order: what a handle
  * needs of others it keeps alive. What a host lends - voxels, allocator, threads, log - must
@@ -70,8 +70,8 @@ typedef enum plc_status PLC_INT {
   PLC_OK = 0,
   PLC_INVALID_ARGUMENT = 1, /* a parameter is outside its range */
   PLC_INVALID_DATA = 2,     /* the image or mesh cannot be used */
-  PLC_OUT_OF_MEMORY = 3,
-  PLC_CANCELLED = 4, /* a callback asked to stop */
+  PLC_OUT_OF_MEMORY = 3,    /* the message tells how much was asked for, where that grows with the data */
+  PLC_CANCELLED = 4,        /* a callback asked to stop */
   PLC_INTERNAL = 5 /* a bug of the engine, caught before it did harm; the message tells the cause */
 } plc_status;
 
@@ -109,6 +109,9 @@ typedef struct plc_surface plc_surface;
  * "MAJOR.MINOR.PATCH", static storage, and as PLC_VERSION. */
 PLC_API const char* plc_version_string(void);
 PLC_API int plc_version(void);
+/* What a status means, in a few words without an end; for any value. Static storage. What was wrong
+ * with a call is told by plc_context_message(). */
+PLC_API const char* plc_status_string(plc_status status);
 
 /* ---- context ---------------------------------------------------------------------------- */
 
@@ -466,6 +469,7 @@ typedef struct plc_pyramid_level {
   double unit;       /* U_h, mm */
   double iso;        /* pi_I of this level, in the image's units; NAN: not set */
 } plc_pyramid_level;
+PLC_API void plc_pyramid_level_defaults(plc_pyramid_level* level);
 
 /* Levels above I_0, so that 0 <= h <= it; -1 for NULL. */
 PLC_API int plc_pyramid_levels(const plc_pyramid* pyramid);
@@ -508,6 +512,7 @@ typedef struct plc_run_state {
   plc_progress progress; /* of the last iteration; zeros before the first. Its seconds are those
                             spent within calls on this run, or before it was saved */
 } plc_run_state;
+PLC_API void plc_run_state_defaults(plc_run_state* state);
 
 /* Goes on until the amount is done, or the run is. state may be NULL; it is written where the
  * status is PLC_OK. A run that is done stays so: PLC_OK. Callbacks may not use the run. */
@@ -607,6 +612,7 @@ typedef struct plc_measures {
   double area;        /* of the space measured in, squared (mm2 in patient space) */
   double volume;      /* signed: > 0 when faces are outward */
 } plc_measures;
+PLC_API void plc_measures_defaults(plc_measures* measures);
 PLC_API plc_status plc_surface_measure(plc_context* context, const plc_surface* surface,
                                        plc_space space, plc_measures* measures);
 /* See plc_check_mesh; in mm. Of the surface as the engine holds it: coordinates that are written in
@@ -639,10 +645,16 @@ struct plc_level_report {
    * and were frozen, and their vertices. See plc_surface_frozen_sites. */
   int64_t frozen_sites, frozen_vertices;
 };
+PLC_API void plc_level_report_defaults(plc_level_report* report);
 /* index: 0 .. plc_surface_level_count - 1, from coarse to fine. 0 levels for NULL. */
 PLC_API int plc_surface_level_count(const plc_surface* surface);
 PLC_API plc_status plc_surface_level(plc_context* context, const plc_surface* surface, int index,
                                      plc_level_report* report);
+/* 1: every level on which there is a surface came to rest, and so the result has. 0: max_iterations
+ * ended one before that, or it is the surface of a run on a level that has not ended: the surface
+ * is as valid, but may not have come to where its forces would have it. plc_surface_level tells
+ * which. Frozen sites are at rest. 1 of a mesh from elsewhere, 0 for NULL. */
+PLC_API int plc_surface_converged(const plc_surface* surface);
 /* Where the time of an extraction went, seconds. */
 typedef struct plc_seconds {
   size_t struct_size;
@@ -650,6 +662,7 @@ typedef struct plc_seconds {
   double images;      /* of it: the images of the pyramid alone */
   double evolution;
 } plc_seconds;
+PLC_API void plc_seconds_defaults(plc_seconds* seconds);
 PLC_API plc_status plc_surface_seconds(plc_context* context, const plc_surface* surface,
                                        plc_seconds* seconds);
 /* The parameters as used, with everything that was derived filled in. */
@@ -680,6 +693,7 @@ struct plc_check {
   double min_angle, max_angle; /* degrees */
   int32_t valence_min, valence_max;
 };
+PLC_API void plc_check_defaults(plc_check* check);
 
 /* xyz: 3 * vertex_count finite values; abc: 3 * face_count indices below vertex_count. Predicates
  * are exact. The faces around one vertex are compared each with each: a million of them would take
@@ -720,6 +734,7 @@ typedef struct plc_component_measures {
                                   axis is the longest one of a solid */
   double principal_axes[9];    /* unit, a right-handed frame: [3 i + k] is component k of axis i */
 } plc_component_measures;
+PLC_API void plc_component_measures_defaults(plc_component_measures* measures);
 
 /* whole: of all components together, or NULL. components: the first min(capacity, *count) of them,
  * the largest area first, ties by first_face; NULL where capacity is 0. *count: how many there are;
@@ -767,6 +782,7 @@ typedef struct plc_distances {
   double mean, rms, max;
   double vertex_mean, vertex_max; /* of the first mesh's vertices alone */
 } plc_distances;
+PLC_API void plc_distances_defaults(plc_distances* distances);
 
 /* distance: one value per vertex of the first mesh, or NULL. summary may be NULL, else struct_size
  * must be set; NAN in it where the first mesh has no area (mean, rms) or no vertex (the others).

@@ -1,0 +1,95 @@
+// What the C API tells of failures, of a surface's rest, and of structs that are only written.
+#include <catch2/catch.hpp>
+#include <climits>
+#include <cstring>
+#include <set>
+#include <string>
+#include <type_traits>
+
+#include "engine/pellicle.h"
+#include "tests/samples/sample_api.h"
+#include "tests/samples/sample_hosts.h"
+#include "tests/samples/sample_steps.h"
+
+using namespace samples;
+
+namespace {
+
+template <typename Struct>
+void require_cleared(void (*defaults)(Struct*)) {
+  Struct s;
+  std::memset(static_cast<void*>(&s), 0x5a, sizeof s);
+  defaults(&s);
+  CHECK(s.struct_size == sizeof s);
+  s.struct_size = 0;
+  if constexpr (std::is_same_v<Struct, plc_check>) {
+    CHECK(s.measures.struct_size == sizeof s.measures);
+    s.measures.struct_size = 0;
+  }
+  if constexpr (std::is_same_v<Struct, plc_run_state>) {
+    CHECK(s.progress.struct_size == sizeof s.progress);
+    s.progress.struct_size = 0;
+  }
+  Struct zero{};
+  CHECK(std::memcmp(static_cast<const void*>(&s), static_cast<const void*>(&zero), sizeof s) == 0);
+  defaults(nullptr);
+}
+
+}  // namespace
+
+TEST_CASE("every status has a text of its own, and what is no status has one, too",
+          "[pellicle_outputs]") {
+  std::set<std::string> texts;
+  for (int status = PLC_OK; status <= PLC_INTERNAL; ++status) {
+    texts.insert(plc_status_string(static_cast<plc_status>(status)));
+  }
+  CHECK(texts.size() == 6);
+  CHECK(texts.count("out of memory") == 1);
+  CHECK(texts.count("") == 0);
+  for (const int status : {-1, PLC_INTERNAL + 1, INT_MIN, INT_MAX}) {
+    CHECK(std::string(plc_status_string(static_cast<plc_status>(status))) ==
+          "not a status of this version of the library");
+  }
+}
+
+TEST_CASE("structs that are only written start with their size and nothing else",
+          "[pellicle_outputs]") {
+  require_cleared(plc_pyramid_level_defaults);
+  require_cleared(plc_run_state_defaults);
+  require_cleared(plc_measures_defaults);
+  require_cleared(plc_level_report_defaults);
+  require_cleared(plc_seconds_defaults);
+  require_cleared(plc_check_defaults);
+  require_cleared(plc_component_measures_defaults);
+  require_cleared(plc_distances_defaults);
+}
+
+TEST_CASE("a surface tells whether it came to rest", "[pellicle_outputs]") {
+  const Context context = make_context();
+  const Volume volume = ball({24, 24, 24});
+  const plc_image image = image_of(volume);
+  plc_parameters p = parameters(0.5, 1);
+  CHECK(plc_surface_converged(extract(context.get(), image, p).get()) == 1);
+  p.max_iterations = 3;
+  CHECK(plc_surface_converged(extract(context.get(), image, p).get()) == 0);
+  CHECK(plc_surface_converged(nullptr) == 0);
+}
+
+TEST_CASE("the surface of a run has not converged before its level ends", "[pellicle_outputs]") {
+  const Scene s;
+  const Context context = make_context();
+  const PyramidHandle pyramid = pyramid_of(context.get(), s.image, s.parameters);
+  const RunHandle run = run_of(context.get(), pyramid.get(), s.parameters);
+  const auto converged = [&] {
+    return plc_surface_converged(surface_of(context.get(), run.get()).get());
+  };
+  CHECK(converged() == 0);
+  advance(context.get(), run.get(), PLC_ONE_ITERATION);
+  CHECK(converged() == 0);
+  advance(context.get(), run.get(), PLC_ONE_LEVEL);
+  CHECK(converged() == 1);
+  advance(context.get(), run.get(), PLC_ONE_ITERATION);
+  CHECK(converged() == 0);
+  advance(context.get(), run.get(), PLC_ALL_LEVELS);
+  CHECK(converged() == 1);
+}
