@@ -1,8 +1,8 @@
 /* Pellicle: closed, oriented, non-self-intersecting triangulated surfaces from 3D images.
  *
- * The C API of the engine; the only installed header. It implements Lachaud & Montanvert,
- * "Deformable Meshes with Automated Topology Changes for Coarse-to-fine 3D Surface Extraction";
- * numbers in parentheses are its equations, section numbers are its sections.
+ * The C API of the engine; pellicle.hpp is a layer for C++ on it. It implements Lachaud &
+ * Montanvert, "Deformable Meshes with Automated Topology Changes for Coarse-to-fine 3D Surface
+ * Extraction"; numbers in parentheses are its equations, section numbers are its sections.
  *
  *   plc_extract                                            an image to a surface, in one call
  *   plc_volume_create, plc_pyramid_create, plc_run_create  the same in steps of any size
@@ -70,7 +70,7 @@ typedef enum plc_status PLC_INT {
   PLC_OK = 0,
   PLC_INVALID_ARGUMENT = 1, /* a parameter is outside its range */
   PLC_INVALID_DATA = 2,     /* the image or mesh cannot be used */
-  PLC_OUT_OF_MEMORY = 3,    /* the message tells how much was asked for, where that grows with the data */
+  PLC_OUT_OF_MEMORY = 3,    /* the message tells how much was asked for, but for small things */
   PLC_CANCELLED = 4,        /* a callback asked to stop */
   PLC_INTERNAL = 5 /* a bug of the engine, caught before it did harm; the message tells the cause */
 } plc_status;
@@ -261,6 +261,19 @@ typedef enum plc_mesh_kind PLC_INT {
 
 #define PLC_MAX_LEVELS 32
 
+/* How long the edges of the result are. A uniform mesh is as fine as the image: no parameter sets
+ * its edges. With v the shortest side of a voxel, delta is v / 1.2, and every edge is between delta
+ * and 2.5 delta long, 0.83 v .. 2.08 v: 1.1 v to 1.5 v in the mean, 0.5 to 0.9 vertices to each
+ * v * v of the surface. Where voxels are no cubes, PLC_ANISOTROPY_VOXEL and _METRIC count lengths
+ * in voxels on each axis: in mm edges are longer along the longer sides. With
+ * PLC_ANISOTROPY_PHYSICAL they are as long in mm in all directions; v there is doubled until a
+ * voxel is at most 8 cubes of it. For longer or shorter edges everywhere give an image of larger or
+ * smaller voxels.
+ *
+ * Those of an adaptive mesh are by place: where the image's iso-surface bends as a ball of radius R
+ * they are about 3 sqrt(tolerance R) in the mean, but within edge_min .. edge_max.
+ *
+ * On a coarser level h everything is reduction^h times as long, as its voxels are. */
 typedef struct plc_parameters {
   size_t struct_size;
   /* what to extract */
@@ -275,25 +288,25 @@ typedef struct plc_parameters {
   plc_feature feature;
   double feature_sigma; /* of the Gaussian, mm, >= 0; 0: none */
   /* the pyramid */
-  int levels;       /* levels above I_0; -1: 3, or fewer when the image is small; 0: direct */
-  double reduction; /* rho, 1 < rho <= 2 */
+  int levels;       /* levels above I_0, the image; -1: 3, or fewer when that is small; 0: direct */
+  double reduction; /* rho, 1 < rho <= 2: how much longer voxels are from level to level */
   /* the start */
   plc_init init;
   int bubbles[3]; /* each 1 .. 256 */
-  /* the mesh; lengths in mm where voxels have their shortest side, on I_0 (on a coarser level as
-     much longer as its voxels are). 0: derived from the voxels; the result's parameters tell */
+  /* the mesh, see above; lengths in mm where voxels have their shortest side, on I_0. 0: derived
+     from the voxels; the result's parameters tell */
   plc_mesh_kind mesh;
   double tolerance; /* of an adaptive mesh: the mean distance of its facets from a surface that
                        bends as the image's does, > 0; 0: 1/24 of a voxel */
   double edge_min, edge_max; /* of an adaptive mesh: mean edges lie between, an eighth of those of a
                                 uniform mesh and 7.9 times those at most; 0: 0.625 and 5 voxels */
   /* the model */
-  double curvature; /* alpha_c (5), >= 0 */
-  double spring;    /* alpha_e (6), >= 0 */
+  double curvature; /* alpha_c (5), >= 0: smooths; more for noise, less for thin parts */
+  double spring;    /* alpha_e (6), >= 0: draws edges to rest_length, within what (1), (2) allow */
   plc_rest_length rest_length;
   double rest_length_value; /* in units of delta, >= 0 */
   plc_force force;
-  double attraction;       /* |alpha_I| (7), > 0 */
+  double attraction;       /* |alpha_I| (7), > 0: how much the image counts against curvature */
   double gradient;         /* alpha_gradI (8), along the normal; < 0: away from bright */
   double gradient_tangent; /* beta_gradI (8), along the tangent plane; may keep a level from rest */
   double gradient_bound;   /* norm of the gradient, in window per U_h, at which (8) is 1; > 0 */
@@ -627,7 +640,8 @@ struct plc_level_report {
   int level;       /* h */
   int64_t dims[3]; /* of I_h, padding included */
   double unit;     /* U_h, mm */
-  double delta;    /* the invariant of (1)-(3) in mesh units (voxels of I_0 by default) */
+  double delta;    /* of (1)-(3), the length of the shortest edge, in mesh units (voxels of I_0 by
+                      default) */
   double iso;      /* pi_I of this level, in the image's units */
   int64_t iterations;
   int64_t vertices; /* at the end of the level */

@@ -1,6 +1,8 @@
 // What the C API tells of failures, of a surface's rest, and of structs that are only written.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <climits>
+#include <cmath>
 #include <cstring>
 #include <set>
 #include <string>
@@ -33,6 +35,20 @@ void require_cleared(void (*defaults)(Struct*)) {
   Struct zero{};
   CHECK(std::memcmp(static_cast<const void*>(&s), static_cast<const void*>(&zero), sizeof s) == 0);
   defaults(nullptr);
+}
+
+// 0.5 on a sphere of the radius, a ramp of six voxels across it.
+Volume edged_ball(int64_t n, double radius) {
+  Volume volume = empty_volume({n, n, n}, {1, 1, 1});
+  const double middle = static_cast<double>(n - 1) / 2;
+  for (int64_t i = 0; i < n * n * n; ++i) {
+    const double x = static_cast<double>(i % n) - middle;
+    const double y = static_cast<double>(i / n % n) - middle;
+    const double z = static_cast<double>(i / (n * n)) - middle;
+    const double value = 0.5 + (radius - std::hypot(x, y, z)) / 6;
+    volume.values[static_cast<size_t>(i)] = static_cast<float>(std::clamp(value, 0.0, 1.0));
+  }
+  return volume;
 }
 
 }  // namespace
@@ -92,4 +108,35 @@ TEST_CASE("the surface of a run has not converged before its level ends", "[pell
   CHECK(converged() == 0);
   advance(context.get(), run.get(), PLC_ALL_LEVELS);
   CHECK(converged() == 1);
+}
+
+TEST_CASE("edges are as long as the header says", "[pellicle_outputs]") {
+  const Context context = make_context();
+  const auto check_of = [&](double radius, double voxel, plc_mesh_kind mesh, double& tolerance) {
+    const auto n = static_cast<int64_t>(2 * radius) + 12;
+    const Volume volume = edged_ball(n, radius);
+    plc_image image = image_of(volume);
+    for (double& side : image.spacing) side = voxel;
+    plc_parameters p = parameters(0.5, 2);
+    p.mesh = mesh;
+    const Surface surface = extract(context.get(), image, p);
+    tolerance = parameters_of(surface.get()).tolerance;
+    plc_check check;
+    plc_check_defaults(&check);
+    REQUIRE(plc_surface_check(context.get(), surface.get(), &check) == PLC_OK);
+    return check;
+  };
+  double tolerance = 0;
+  for (const double voxel : {1.0, 0.3}) {
+    const plc_check uniform = check_of(10, voxel, PLC_MESH_UNIFORM, tolerance);
+    CHECK(uniform.edge_min > 0.83 * voxel);
+    CHECK(uniform.edge_max < 2.09 * voxel);
+    CHECK(uniform.edge_mean > 1.1 * voxel);
+    CHECK(uniform.edge_mean < 1.5 * voxel);
+    for (const double radius : {10.0, 20.0}) {
+      const plc_check adaptive = check_of(radius, voxel, PLC_MESH_ADAPTIVE, tolerance);
+      CHECK(tolerance == Approx(voxel / 24));
+      CHECK(adaptive.edge_mean == Approx(3 * std::sqrt(tolerance * radius * voxel)).epsilon(0.15));
+    }
+  }
 }
