@@ -41,15 +41,15 @@ void require_cleared(void (*defaults)(Struct*)) {
 Volume edged_ball(int64_t n, double radius) {
   Volume volume = empty_volume({n, n, n}, {1, 1, 1});
   const double middle = static_cast<double>(n - 1) / 2;
-  size_t i = 0;
+  volume.values.clear();
   for (int64_t z = 0; z < n; ++z) {
     for (int64_t y = 0; y < n; ++y) {
       for (int64_t x = 0; x < n; ++x) {
         const double distance =
             std::hypot(static_cast<double>(x) - middle, static_cast<double>(y) - middle,
                        static_cast<double>(z) - middle);
-        volume.values[i++] =
-            static_cast<float>(std::clamp(0.5 + (radius - distance) / 6, 0.0, 1.0));
+        volume.values.push_back(
+            static_cast<float>(std::clamp(0.5 + (radius - distance) / 6, 0.0, 1.0)));
       }
     }
   }
