@@ -1,8 +1,8 @@
 /* Pellicle: closed, oriented, non-self-intersecting triangulated surfaces from 3D images.
  *
- * The C API of the engine; the only installed header. It implements Lachaud & Montanvert,
- * "Deformable Meshes with Automated Topology Changes for Coarse-to-fine 3D Surface Extraction";
- * numbers in parentheses are its equations, section numbers are its sections.
+ * The C API of the engine; pellicle.hpp is a layer for C++ on it. It implements Lachaud &
+ * Montanvert, "Deformable Meshes with Automated Topology Changes for Coarse-to-fine 3D Surface
+ * Extraction"; numbers in parentheses are its equations, section numbers are its sections.
  *
  *   plc_extract                                            an image to a surface, in one call
  *   plc_volume_create, plc_pyramid_create, plc_run_create  the same in steps of any size
@@ -21,11 +21,11 @@
  * to it, nor leave it by an exception or longjmp. Callbacks can stop what evolves a surface; making
  * volumes, pyramids, runs and surfaces, and checking and measuring, cannot be stopped.
  *
- * Structs start with struct_size: fill them with their _defaults function, then change fields. For
- * structs that are only written set struct_size = sizeof. A library newer than the header that a
- * host was built with takes what it does not get at its default; one that is older refuses the
- * struct with PLC_INVALID_ARGUMENT. Structs within others and in arrays will not grow:
- * plc_measures, plc_progress, plc_component_measures, plc_seed, plc_attachment, plc_pin.
+ * Structs start with struct_size: fill them with their _defaults function, then change fields. Of
+ * structs that are only written it sets struct_size = sizeof, and all else to 0. A library newer
+ * than the header that a host was built with takes what it does not get at its default; one that is
+ * older refuses the struct with PLC_INVALID_ARGUMENT. Structs within others and in arrays will not
+ * grow: plc_measures, plc_progress, plc_component_measures, plc_seed, plc_attachment, plc_pin.
  *
  * Handles are freed with their _destroy function, which takes NULL, in any order: what a handle
  * needs of others it keeps alive. What a host lends - voxels, allocator, threads, log - must
@@ -70,8 +70,8 @@ typedef enum plc_status PLC_INT {
   PLC_OK = 0,
   PLC_INVALID_ARGUMENT = 1, /* a parameter is outside its range */
   PLC_INVALID_DATA = 2,     /* the image or mesh cannot be used */
-  PLC_OUT_OF_MEMORY = 3,
-  PLC_CANCELLED = 4, /* a callback asked to stop */
+  PLC_OUT_OF_MEMORY = 3,    /* the message tells how much was asked for, but for small things */
+  PLC_CANCELLED = 4,        /* a callback asked to stop */
   PLC_INTERNAL = 5 /* a bug of the engine, caught before it did harm; the message tells the cause */
 } plc_status;
 
@@ -109,6 +109,9 @@ typedef struct plc_surface plc_surface;
  * "MAJOR.MINOR.PATCH", static storage, and as PLC_VERSION. */
 PLC_API const char* plc_version_string(void);
 PLC_API int plc_version(void);
+/* What a status means, in a few words without an end; for any value. Static storage. What was wrong
+ * with a call is told by plc_context_message(). */
+PLC_API const char* plc_status_string(plc_status status);
 
 /* ---- context ---------------------------------------------------------------------------- */
 
@@ -258,6 +261,19 @@ typedef enum plc_mesh_kind PLC_INT {
 
 #define PLC_MAX_LEVELS 32
 
+/* How long the edges of the result are. A uniform mesh is as fine as the image: no parameter sets
+ * its edges. With v the shortest side of a voxel, delta is v / 1.2, and every edge is between delta
+ * and 2.5 delta long, 0.83 v .. 2.08 v: 1.1 v to 1.5 v in the mean, 0.5 to 0.9 vertices to each
+ * v * v of the surface. Where voxels are no cubes, PLC_ANISOTROPY_VOXEL and _METRIC count lengths
+ * in voxels on each axis: in mm edges are longer along the longer sides. With
+ * PLC_ANISOTROPY_PHYSICAL they are as long in mm in all directions; v there is doubled until a
+ * voxel is at most 8 cubes of it. For longer or shorter edges everywhere give an image of larger or
+ * smaller voxels.
+ *
+ * Those of an adaptive mesh are by place: where the image's iso-surface bends as a ball of radius R
+ * they are about 3 sqrt(tolerance R) in the mean, but within edge_min .. edge_max.
+ *
+ * On a coarser level h everything is reduction^h times as long, as its voxels are. */
 typedef struct plc_parameters {
   size_t struct_size;
   /* what to extract */
@@ -272,25 +288,25 @@ typedef struct plc_parameters {
   plc_feature feature;
   double feature_sigma; /* of the Gaussian, mm, >= 0; 0: none */
   /* the pyramid */
-  int levels;       /* levels above I_0; -1: 3, or fewer when the image is small; 0: direct */
-  double reduction; /* rho, 1 < rho <= 2 */
+  int levels;       /* levels above I_0, the image; -1: 3, or fewer when that is small; 0: direct */
+  double reduction; /* rho, 1 < rho <= 2: how much longer voxels are from level to level */
   /* the start */
   plc_init init;
   int bubbles[3]; /* each 1 .. 256 */
-  /* the mesh; lengths in mm where voxels have their shortest side, on I_0 (on a coarser level as
-     much longer as its voxels are). 0: derived from the voxels; the result's parameters tell */
+  /* the mesh, see above; lengths in mm where voxels have their shortest side, on I_0. 0: derived
+     from the voxels; the result's parameters tell */
   plc_mesh_kind mesh;
   double tolerance; /* of an adaptive mesh: the mean distance of its facets from a surface that
                        bends as the image's does, > 0; 0: 1/24 of a voxel */
   double edge_min, edge_max; /* of an adaptive mesh: mean edges lie between, an eighth of those of a
                                 uniform mesh and 7.9 times those at most; 0: 0.625 and 5 voxels */
   /* the model */
-  double curvature; /* alpha_c (5), >= 0 */
-  double spring;    /* alpha_e (6), >= 0 */
+  double curvature; /* alpha_c (5), >= 0: smooths; more for noise, less for thin parts */
+  double spring;    /* alpha_e (6), >= 0: draws edges to rest_length, within what (1), (2) allow */
   plc_rest_length rest_length;
   double rest_length_value; /* in units of delta, >= 0 */
   plc_force force;
-  double attraction;       /* |alpha_I| (7), > 0 */
+  double attraction;       /* |alpha_I| (7), > 0: how much the image counts against curvature */
   double gradient;         /* alpha_gradI (8), along the normal; < 0: away from bright */
   double gradient_tangent; /* beta_gradI (8), along the tangent plane; may keep a level from rest */
   double gradient_bound;   /* norm of the gradient, in window per U_h, at which (8) is 1; > 0 */
@@ -466,6 +482,7 @@ typedef struct plc_pyramid_level {
   double unit;       /* U_h, mm */
   double iso;        /* pi_I of this level, in the image's units; NAN: not set */
 } plc_pyramid_level;
+PLC_API void plc_pyramid_level_defaults(plc_pyramid_level* level);
 
 /* Levels above I_0, so that 0 <= h <= it; -1 for NULL. */
 PLC_API int plc_pyramid_levels(const plc_pyramid* pyramid);
@@ -508,6 +525,7 @@ typedef struct plc_run_state {
   plc_progress progress; /* of the last iteration; zeros before the first. Its seconds are those
                             spent within calls on this run, or before it was saved */
 } plc_run_state;
+PLC_API void plc_run_state_defaults(plc_run_state* state);
 
 /* Goes on until the amount is done, or the run is. state may be NULL; it is written where the
  * status is PLC_OK. A run that is done stays so: PLC_OK. Callbacks may not use the run. */
@@ -607,6 +625,7 @@ typedef struct plc_measures {
   double area;        /* of the space measured in, squared (mm2 in patient space) */
   double volume;      /* signed: > 0 when faces are outward */
 } plc_measures;
+PLC_API void plc_measures_defaults(plc_measures* measures);
 PLC_API plc_status plc_surface_measure(plc_context* context, const plc_surface* surface,
                                        plc_space space, plc_measures* measures);
 /* See plc_check_mesh; in mm. Of the surface as the engine holds it: coordinates that are written in
@@ -621,7 +640,8 @@ struct plc_level_report {
   int level;       /* h */
   int64_t dims[3]; /* of I_h, padding included */
   double unit;     /* U_h, mm */
-  double delta;    /* the invariant of (1)-(3) in mesh units (voxels of I_0 by default) */
+  double delta;    /* of (1)-(3), the length of the shortest edge, in mesh units (voxels of I_0 by
+                      default) */
   double iso;      /* pi_I of this level, in the image's units */
   int64_t iterations;
   int64_t vertices; /* at the end of the level */
@@ -639,10 +659,16 @@ struct plc_level_report {
    * and were frozen, and their vertices. See plc_surface_frozen_sites. */
   int64_t frozen_sites, frozen_vertices;
 };
+PLC_API void plc_level_report_defaults(plc_level_report* report);
 /* index: 0 .. plc_surface_level_count - 1, from coarse to fine. 0 levels for NULL. */
 PLC_API int plc_surface_level_count(const plc_surface* surface);
 PLC_API plc_status plc_surface_level(plc_context* context, const plc_surface* surface, int index,
                                      plc_level_report* report);
+/* 1: every level on which there is a surface came to rest, and so the result has. 0: max_iterations
+ * ended one before that, or it is the surface of a run on a level that has not ended: the surface
+ * is as valid, but may not have come to where its forces would have it. plc_surface_level tells
+ * which. Frozen sites are at rest. 1 of a mesh from elsewhere, 0 for NULL. */
+PLC_API int plc_surface_converged(const plc_surface* surface);
 /* Where the time of an extraction went, seconds. */
 typedef struct plc_seconds {
   size_t struct_size;
@@ -650,6 +676,7 @@ typedef struct plc_seconds {
   double images;      /* of it: the images of the pyramid alone */
   double evolution;
 } plc_seconds;
+PLC_API void plc_seconds_defaults(plc_seconds* seconds);
 PLC_API plc_status plc_surface_seconds(plc_context* context, const plc_surface* surface,
                                        plc_seconds* seconds);
 /* The parameters as used, with everything that was derived filled in. */
@@ -680,6 +707,7 @@ struct plc_check {
   double min_angle, max_angle; /* degrees */
   int32_t valence_min, valence_max;
 };
+PLC_API void plc_check_defaults(plc_check* check);
 
 /* xyz: 3 * vertex_count finite values; abc: 3 * face_count indices below vertex_count. Predicates
  * are exact. The faces around one vertex are compared each with each: a million of them would take
@@ -720,6 +748,7 @@ typedef struct plc_component_measures {
                                   axis is the longest one of a solid */
   double principal_axes[9];    /* unit, a right-handed frame: [3 i + k] is component k of axis i */
 } plc_component_measures;
+PLC_API void plc_component_measures_defaults(plc_component_measures* measures);
 
 /* whole: of all components together, or NULL. components: the first min(capacity, *count) of them,
  * the largest area first, ties by first_face; NULL where capacity is 0. *count: how many there are;
@@ -767,6 +796,7 @@ typedef struct plc_distances {
   double mean, rms, max;
   double vertex_mean, vertex_max; /* of the first mesh's vertices alone */
 } plc_distances;
+PLC_API void plc_distances_defaults(plc_distances* distances);
 
 /* distance: one value per vertex of the first mesh, or NULL. summary may be NULL, else struct_size
  * must be set; NAN in it where the first mesh has no area (mean, rms) or no vertex (the others).

@@ -86,8 +86,16 @@ Memory& Memory::current() {
   return scoped == nullptr ? system : *scoped;
 }
 
+void Memory::refuse(size_t size, int64_t in_use) {
+  uint64_t none = 0;
+  if (refused_.compare_exchange_strong(none, size, std::memory_order_relaxed)) {
+    in_use_.store(in_use, std::memory_order_relaxed);
+  }
+  throw std::bad_alloc();
+}
+
 void* Memory::allocate(size_t size, size_t alignment) {
-  if (size > static_cast<size_t>(INT64_MAX) / 2) throw std::bad_alloc();
+  if (size > static_cast<size_t>(INT64_MAX) / 2) refuse(size, now());
   const auto bytes = static_cast<int64_t>(size);
   const int64_t now = now_.fetch_add(bytes, std::memory_order_relaxed) + bytes;
   void* data = nullptr;
@@ -97,7 +105,7 @@ void* Memory::allocate(size_t size, size_t alignment) {
   }
   if (data == nullptr) {
     now_.fetch_sub(bytes, std::memory_order_relaxed);
-    throw std::bad_alloc();
+    refuse(size, now - bytes);
   }
   int64_t peak = peak_.load(std::memory_order_relaxed);
   while (peak < now && !peak_.compare_exchange_weak(peak, now, std::memory_order_relaxed)) {

@@ -35,6 +35,17 @@ class Memory {
   // Until the limit; more than any machine has where there is none.
   int64_t left() const { return limit_ == 0 ? INT64_MAX : limit_ - now(); }
   int64_t peak() const { return peak_.load(std::memory_order_relaxed); }
+  int64_t limit() const { return limit_; }
+
+  // What allocate() has thrown for, the first time since this was forgotten. size 0: for nothing.
+  struct Refusal {
+    uint64_t size = 0;
+    int64_t in_use = 0;  // then
+  };
+  Refusal refusal() const {
+    return {refused_.load(std::memory_order_relaxed), in_use_.load(std::memory_order_relaxed)};
+  }
+  void forget_refusal() { refused_.store(0, std::memory_order_relaxed); }
 
   // What buffers of this thread are allocated from; where no MemoryScope says so, the system's.
   static Memory& current();
@@ -42,11 +53,15 @@ class Memory {
  private:
   friend class MemoryScope;
   static constinit thread_local Memory* scoped;
+  // Notes the refusal, and throws.
+  [[noreturn]] void refuse(size_t size, int64_t in_use);
 
   Hooks hooks_;
   int64_t limit_ = 0;
   std::atomic<int64_t> now_{0};
   std::atomic<int64_t> peak_{0};
+  std::atomic<uint64_t> refused_{0};
+  std::atomic<int64_t> in_use_{0};
 };
 
 // Makes a memory the current one of this thread for as long as the scope lives.

@@ -1,6 +1,11 @@
 // The C API: versions and contexts.
 #include <algorithm>
+#include <array>
+#include <cinttypes>
+#include <cstdio>
 #include <cstring>
+#include <new>
+#include <string>
 #include <string_view>
 
 #include "engine/api/handles.h"
@@ -90,7 +95,35 @@ plc::Status create(const plc_context_options* options, plc_context** context) {
   return {};
 }
 
+// Rounded up, in whole units: a point would be the locale's.
+void write_bytes(uint64_t bytes, std::array<char, 32>& text) {
+  constexpr uint64_t kKiB = 1024, kMiB = kKiB * kKiB, kMany = 10;
+  const bool many = bytes >= kMany * kMiB;
+  const uint64_t unit = many ? kMiB : kKiB;
+  const uint64_t count = bytes / unit + (bytes % unit == 0 ? 0 : 1);
+  std::snprintf(text.data(), text.size(), "%" PRIu64 " %s", bytes < kMany * kKiB ? bytes : count,
+                bytes < kMany * kKiB ? "bytes" : (many ? "MiB" : "KiB"));
+}
+
 }  // namespace
+
+void plc::tell_refusal(const Memory& memory, std::string& message) noexcept {
+  const Memory::Refusal refusal = memory.refusal();
+  if (refusal.size == 0) return;
+  std::array<char, 32> asked{}, used{}, limit{};
+  write_bytes(refusal.size, asked);
+  write_bytes(static_cast<uint64_t>(refusal.in_use), used);
+  write_bytes(static_cast<uint64_t>(memory.limit()), limit);
+  std::array<char, 160> line{};
+  std::snprintf(line.data(), line.size(), ": %s were asked for, %s are in use%s%s", asked.data(),
+                used.data(), memory.limit() == 0 ? "" : ", the limit is ",
+                memory.limit() == 0 ? "" : limit.data());
+  try {
+    message.append(line.data());
+  } catch (const std::bad_alloc&) {
+    return;
+  }
+}
 
 extern "C" {
 
@@ -100,6 +133,24 @@ const char* plc_version_string(void) {
 
 int plc_version(void) {
   return PLC_VERSION;
+}
+
+const char* plc_status_string(plc_status status) {
+  switch (status) {
+    case PLC_OK:
+      return "success";
+    case PLC_INVALID_ARGUMENT:
+      return "invalid argument: a parameter is outside its range";
+    case PLC_INVALID_DATA:
+      return "invalid data: the image or mesh cannot be used";
+    case PLC_OUT_OF_MEMORY:
+      return "out of memory";
+    case PLC_CANCELLED:
+      return "cancelled: a callback asked to stop";
+    case PLC_INTERNAL:
+      return "internal error: a bug of the engine, caught before it did harm";
+  }
+  return "not a status of this version of the library";
 }
 
 void plc_context_options_defaults(plc_context_options* options) {

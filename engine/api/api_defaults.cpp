@@ -2,6 +2,17 @@
 #include "engine/api/parameter_list.h"
 #include "engine/pellicle.h"
 
+namespace {
+
+// Of a struct that is only written.
+template <typename T>
+void clear_output(T* output) {
+  *output = {};
+  output->struct_size = sizeof *output;
+}
+
+}  // namespace
+
 extern "C" {
 
 void plc_image_defaults(plc_image* image) {
@@ -34,6 +45,48 @@ void plc_extras_defaults(plc_extras* extras) {
   *extras = {};
   extras->struct_size = sizeof *extras;
   extras->space = PLC_SPACE_LPS;
+}
+
+void plc_pyramid_level_defaults(plc_pyramid_level* level) {
+  if (level == nullptr) return;
+  clear_output(level);
+}
+
+void plc_run_state_defaults(plc_run_state* state) {
+  if (state == nullptr) return;
+  clear_output(state);
+  clear_output(&state->progress);
+}
+
+void plc_measures_defaults(plc_measures* measures) {
+  if (measures == nullptr) return;
+  clear_output(measures);
+}
+
+void plc_level_report_defaults(plc_level_report* report) {
+  if (report == nullptr) return;
+  clear_output(report);
+}
+
+void plc_seconds_defaults(plc_seconds* seconds) {
+  if (seconds == nullptr) return;
+  clear_output(seconds);
+}
+
+void plc_check_defaults(plc_check* check) {
+  if (check == nullptr) return;
+  clear_output(check);
+  clear_output(&check->measures);
+}
+
+void plc_component_measures_defaults(plc_component_measures* measures) {
+  if (measures == nullptr) return;
+  clear_output(measures);
+}
+
+void plc_distances_defaults(plc_distances* distances) {
+  if (distances == nullptr) return;
+  clear_output(distances);
 }
 
 }  // extern "C"

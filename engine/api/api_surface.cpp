@@ -348,6 +348,17 @@ int plc_surface_level_count(const plc_surface* surface) {
   return surface == nullptr ? 0 : static_cast<int>(surface->records.size());
 }
 
+int plc_surface_converged(const plc_surface* surface) {
+  if (surface == nullptr) return 0;
+  // Records tell of vertices when their level ends, and the last may be of one that goes on.
+  const auto& records = surface->records;
+  for (const plc::LevelRecord& r : records) {
+    const int64_t vertices = &r == &records.back() ? surface->mesh.vertex_count() : r.vertices;
+    if (!r.converged && vertices > 0) return 0;
+  }
+  return 1;
+}
+
 plc_status plc_surface_level(plc_context* context, const plc_surface* surface, int index,
                              plc_level_report* report) {
   return plc::guarded(context, [&]() -> Status {

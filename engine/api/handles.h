@@ -128,15 +128,22 @@ plc_status caught(Body&& body, Tell&& tell) {
   }
 }
 
+// Adds to a message how much memory was asked for, and how much there was; where there is none for
+// that either, the message stays as it is.
+void tell_refusal(const Memory& memory, std::string& message) noexcept;
+
 // Runs body, which returns a Status, in the memory of the context; no exception gets past it.
 template <typename Body>
 plc_status guarded(plc_context* context, Body&& body) {
   if (context == nullptr) return PLC_INVALID_ARGUMENT;
   const std::shared_ptr<Host> host = context->host;
+  host->memory.forget_refusal();
   const MemoryScope scope(host->memory);
   const FloatEnvironment environment;
-  return caught(std::forward<Body>(body),
-                [&](std::string_view line) { context->message.assign(line); });
+  const plc_status status = caught(std::forward<Body>(body),
+                                   [&](std::string_view line) { context->message.assign(line); });
+  if (status == PLC_OUT_OF_MEMORY) tell_refusal(host->memory, context->message);
+  return status;
 }
 
 // Of a struct that a host fills in: what its version of the header has, the rest at its default.

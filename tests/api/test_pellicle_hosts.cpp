@@ -155,6 +155,33 @@ TEST_CASE("within its limit a context works, beyond it says that memory is out",
   CHECK(status_within(1) == PLC_OUT_OF_MEMORY);
 }
 
+TEST_CASE("what memory has no room for is told with how much was asked for", "[pellicle_hosts]") {
+  const Job job;
+  const Context context =
+      context_of([](plc_context_options& options) { options.memory_limit = 100000; });
+  const auto message_of = [&](plc_ownership ownership) {
+    plc_volume* volume = nullptr;
+    const plc_status status = plc_volume_create(context.get(), &job.image, ownership, &volume);
+    plc_volume_destroy(volume);
+    CHECK((status == PLC_OUT_OF_MEMORY) == (ownership == PLC_COPY));
+    return std::string(plc_context_message(context.get()));
+  };
+  CHECK_THAT(message_of(PLC_COPY),
+             Catch::Matchers::StartsWith("out of memory: ") &&
+                 Catch::Matchers::EndsWith(
+                     " KiB were asked for, 0 bytes are in use, the limit is 98 KiB"));
+  // The next call knows nothing of it.
+  CHECK(message_of(PLC_BORROW) == "");
+  // A step of the engine that says what it was about to do.
+  plc_surface* surface = nullptr;
+  CHECK(plc_extract(context.get(), &job.image, &job.parameters, nullptr, &surface) ==
+        PLC_OUT_OF_MEMORY);
+  CHECK_THAT(std::string(plc_context_message(context.get())),
+             Catch::Matchers::StartsWith("pyramid of ") &&
+                 Catch::Matchers::Contains(" levels: out of memory: ") &&
+                 Catch::Matchers::Contains("were asked for"));
+}
+
 TEST_CASE("a context tells what it derives and how levels end", "[pellicle_hosts]") {
   struct Told {
     std::vector<std::string> lines;

@@ -33,8 +33,8 @@ library=$libdir/libpellicle.so
 header=$prefix/include/pellicle.h
 
 # ---- what is there
-headers=$(cd "$prefix/include" && find . -type f)
-[ "$headers" = ./pellicle.h ] || fails "headers besides pellicle.h: $headers"
+headers=$(cd "$prefix/include" && find . -type f | sort | tr '\n' ' ')
+[ "$headers" = "./pellicle.h ./pellicle.hpp " ] || fails "other headers than pellicle.h and .hpp: $headers"
 for file in libpellicle.a pkgconfig/pellicle.pc cmake/Pellicle/PellicleConfig.cmake \
   cmake/Pellicle/PellicleConfigVersion.cmake; do
   [ -s "$libdir/$file" ] || fails "not installed: $file"
@@ -77,6 +77,12 @@ sed -nE 's/^PLC_API .*[ *](plc_[a-z0-9_]+)\(.*/\1/p' "$header" | sort >"$here/de
 nm -D --defined-only "$library" | awk '$2 != "A" {print $3}' | sort >"$here/exported"
 sed 's/$/@@PELLICLE_0/' "$here/declared" | diff - "$here/exported" >"$here/difference" ||
   fails "declared (<) and exported (>) differ: $(grep '^[<>]' "$here/difference" | head -20)"
+
+# The layer for C++ has all that the header declares. What tells of the library itself needs no layer.
+while read -r name; do
+  case $name in plc_version | plc_version_string | plc_parameter_at) continue ;; esac
+  grep -qw "$name" "$prefix/include/pellicle.hpp" || fails "pellicle.hpp does not call $name"
+done <"$here/declared"
 
 # ---- hosts
 cp -r "$source/tests/consumers" "$here/consumers"

@@ -74,7 +74,13 @@ TEST_CASE("nothing is given beyond the limit, and what was refused does not coun
   void* b = memory.allocate(400, 64);
   memory.release(a, 600, 64);
   memory.release(b, 400, 64);
+  // The first is noted, until it is forgotten.
+  CHECK(memory.refusal().size == 401);
+  CHECK(memory.refusal().in_use == 600);
+  memory.forget_refusal();
+  CHECK(memory.refusal().size == 0);
   CHECK_THROWS_AS(memory.allocate(~size_t{0}, 64), std::bad_alloc);
+  CHECK(memory.refusal().size == ~size_t{0});
   CHECK_THROWS_AS(memory.allocate(~size_t{0} / 4, 64), std::bad_alloc);
   CHECK(memory.now() == 0);
 }

@@ -31,6 +31,8 @@ passes engine/mesh/made.h engine/mesh/mesh.h
 passes engine/base/made.h pyramid/executor.h
 passes engine/api/made.h engine/pellicle.h
 passes tools/mesh/made.h engine/pellicle.h
+passes tests/api/made.h engine/pellicle.hpp
+passes engine/pellicle.hpp pellicle.h
 passes tools/command/made.h tools/file/failure.h
 passes tests/mesh/made.h engine/api/handles.h
 passes tests/perf/made.h perf/truth/scene.h
@@ -49,6 +51,10 @@ refuses tools/mesh/made.h tools/volume/volume_io.h 'includes tools/volume/volume
 refuses tools/mesh/made.h engine/mesh/mesh.h 'includes engine/mesh/mesh.h: hosts include nothing'
 refuses tools/command/made.h tests/samples/sample_files.h 'includes tests/samples/sample_files.h: nobody includes tests/'
 refuses engine/pellicle.h engine/mesh/mesh.h 'includes engine/mesh/mesh.h: hosts have no other file'
+
+refuses engine/pellicle.hpp engine/mesh/mesh.h 'includes engine/mesh/mesh.h: hosts have no other file'
+refuses engine/pellicle.hpp other.h 'includes ./other.h: hosts have no other file'
+refuses engine/api/made.h engine/pellicle.hpp 'includes engine/pellicle.hpp, which is for hosts'
 
 # The drawing is that of the includes.
 made engine/guard/made.h engine/mesh/mesh.h

@@ -1,9 +1,9 @@
-# What a host needs of the engine: the header, the libraries, find_package(Pellicle) and pkg-config.
+# What a host needs of the engine: the headers, the libraries, find_package(Pellicle) and pkg-config.
 # Components are those of the Debian packages.
 include(CMakePackageConfigHelpers)
 
 set(cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Pellicle)
-install(FILES engine/pellicle.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT libpellicle-dev)
+install(FILES engine/pellicle.h engine/pellicle.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT libpellicle-dev)
 
 foreach(kind IN ITEMS shared static)
   if(TARGET pellicle_${kind})

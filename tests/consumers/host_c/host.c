@@ -106,7 +106,7 @@ static int make_pyramid(host* h, const int16_t* voxels) {
   }
   for (int level = plc_pyramid_levels(h->pyramid); level >= 0; --level) {
     plc_pyramid_level info;
-    info.struct_size = sizeof info;
+    plc_pyramid_level_defaults(&info);
     if (plc_pyramid_level_info(h->context, h->pyramid, level, &info) != PLC_OK) {
       return failed(h, "level");
     }
@@ -145,8 +145,7 @@ static int evolve(host* h) {
     return failed(h, "run");
   }
   plc_run_state state;
-  memset(&state, 0, sizeof state);
-  state.struct_size = sizeof state;
+  plc_run_state_defaults(&state);
   for (int levels = 1; !state.done; ++levels) {
     if (plc_run_advance(h->context, h->run, PLC_ONE_LEVEL, &state) != PLC_OK) {
       return failed(h, "evolution");
@@ -162,13 +161,17 @@ static int evolve(host* h) {
 /* A valid torus of the volume that was painted. */
 static int verify(const host* h) {
   plc_check check;
-  check.struct_size = sizeof check;
+  plc_check_defaults(&check);
   if (plc_surface_check(h->context, h->surface, &check) != PLC_OK) return failed(h, "check");
   const plc_measures* m = &check.measures;
   printf("%" PRId64 " vertices, %" PRId64 " faces, genus %" PRId64
          ", %.1f mm2, %.1f mm3 "
          "(painted: %.1f mm3)\n",
          m->vertices, m->faces, m->genus, m->area, m->volume, torus_volume());
+  if (!plc_surface_converged(h->surface)) {
+    fprintf(stderr, "host_c: the surface has not come to rest: more iterations?\n");
+    return 0;
+  }
   if (!check.valid || m->components != 1 || m->genus != 1 ||
       fabs(m->volume / torus_volume() - 1) > 0.1) {
     fprintf(stderr, "host_c: the surface is not the torus\n");

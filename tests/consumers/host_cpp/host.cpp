@@ -1,6 +1,6 @@
 // A host in C++: handles that free themselves, the host's own threads, a force and places of its
 // own, and several extractions at the same time, which give the same bits.
-#include <pellicle.h>
+#include <pellicle.hpp>
 
 #include <algorithm>
 #include <array>
@@ -18,18 +18,6 @@
 #include <vector>
 
 namespace {
-
-struct Destroy {
-  void operator()(plc_context* context) const { plc_context_destroy(context); }
-  void operator()(plc_surface* surface) const { plc_surface_destroy(surface); }
-};
-using Context = std::unique_ptr<plc_context, Destroy>;
-using Surface = std::unique_ptr<plc_surface, Destroy>;
-
-void must(plc_status status, const Context& context, const char* what) {
-  if (status == PLC_OK) return;
-  throw std::runtime_error(std::string(what) + ": " + plc_context_message(context.get()));
-}
 
 // The host's threads. Loops of several contexts may run at the same time; the thread that asks for
 // one works on it itself, so that it gets done even when all others are busy.
@@ -120,7 +108,7 @@ struct Image {
   static constexpr int kSize = 36;
   static constexpr double kRadius = 7;
   std::vector<float> voxels;
-  plc_image image{};
+  plc_image image = pellicle::defaults<plc_image>();
 
   Image() {
     const double middle = (kSize - 1) / 2.0;
@@ -134,7 +122,6 @@ struct Image {
         }
       }
     }
-    plc_image_defaults(&image);
     image.type = PLC_F32;
     image.voxels = voxels.data();
     std::fill(image.dims, image.dims + 3, kSize);
@@ -155,20 +142,15 @@ int push_above(const plc_force_points* points, float* forces, void* user) {
 struct Result {
   uint64_t hash = 0;
   plc_check check{};
+  bool converged = false;
   int64_t peak = 0;
   std::string simd;
   std::exception_ptr error;
 };
 
 Result extract(const Image& image, const plc_context_options& options) {
-  plc_context* made = nullptr;
-  char error[256] = "";
-  if (plc_context_create(&options, &made, error, sizeof error) != PLC_OK) {
-    throw std::runtime_error(error);
-  }
-  const Context context(made);
-  plc_parameters parameters;
-  plc_parameters_defaults(&parameters);
+  const pellicle::Context context(options);
+  auto parameters = pellicle::defaults<plc_parameters>();
   parameters.iso = 0.5;
   parameters.levels = 1;
   parameters.curvature = 0.1;
@@ -177,23 +159,19 @@ Result extract(const Image& image, const plc_context_options& options) {
   const double middle = (Image::kSize - 1) / 2.0;
   float height = static_cast<float>(middle);
   const plc_attachment attachment{{middle - 2 * Image::kRadius - 1, middle, middle}, 4, 2};
-  plc_extras extras;
-  plc_extras_defaults(&extras);
+  auto extras = pellicle::defaults<plc_extras>();
   extras.force = push_above;
   extras.force_user = &height;
   extras.attachments = &attachment;
   extras.attachment_count = 1;
 
-  plc_surface* extracted = nullptr;
-  must(plc_extract(context.get(), &image.image, &parameters, &extras, &extracted), context,
-       "extraction");
-  const Surface surface(extracted);
+  const pellicle::Surface surface = pellicle::extract(context, image.image, parameters, &extras);
   Result result;
-  result.hash = plc_surface_hash(surface.get());
-  result.simd = plc_context_simd(context.get());
-  result.check.struct_size = sizeof result.check;
-  must(plc_surface_check(context.get(), surface.get(), &result.check), context, "check");
-  must(plc_context_memory(context.get(), nullptr, &result.peak), context, "memory");
+  result.hash = surface.hash();
+  result.simd = context.simd();
+  result.check = surface.check();
+  result.converged = surface.converged();
+  result.peak = context.memory().peak;
   return result;
 }
 
@@ -203,7 +181,7 @@ void run() {
 
   // Each with a context of its own: oneTBB, one thread, our threads, and our threads without SIMD.
   std::array<plc_context_options, 4> ways;
-  for (plc_context_options& way : ways) plc_context_options_defaults(&way);
+  ways.fill(pellicle::defaults<plc_context_options>());
   ways[1].threads = 1;
   ways[2].parallel_for = ways[3].parallel_for = ThreadPool::parallel_for;
   ways[2].parallel_for_user = ways[3].parallel_for_user = &pool;
@@ -230,6 +208,7 @@ void run() {
                 static_cast<unsigned long long>(result.hash),
                 static_cast<double>(result.peak) / (1024 * 1024));
     if (result.check.valid == 0) throw std::runtime_error("the surface is not valid");
+    if (!result.converged) throw std::runtime_error("the surface has not come to rest");
     if (m.genus != 0) throw std::runtime_error("the surface has handles");
     if (result.hash != results[0].hash) throw std::runtime_error("the surfaces differ");
     if (result.peak <= 0) throw std::runtime_error("no memory was counted");

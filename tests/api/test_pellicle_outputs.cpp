@@ -1,0 +1,147 @@
+// What the C API tells of failures, of a surface's rest, and of structs that are only written.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <climits>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <string>
+#include <type_traits>
+
+#include "engine/pellicle.h"
+#include "tests/samples/sample_api.h"
+#include "tests/samples/sample_hosts.h"
+#include "tests/samples/sample_steps.h"
+
+using namespace samples;
+
+namespace {
+
+template <typename Struct>
+void require_cleared(void (*defaults)(Struct*)) {
+  Struct s;
+  std::memset(static_cast<void*>(&s), 0x5a, sizeof s);
+  defaults(&s);
+  CHECK(s.struct_size == sizeof s);
+  s.struct_size = 0;
+  if constexpr (std::is_same_v<Struct, plc_check>) {
+    CHECK(s.measures.struct_size == sizeof s.measures);
+    s.measures.struct_size = 0;
+  }
+  if constexpr (std::is_same_v<Struct, plc_run_state>) {
+    CHECK(s.progress.struct_size == sizeof s.progress);
+    s.progress.struct_size = 0;
+  }
+  Struct zero{};
+  CHECK(std::memcmp(static_cast<const void*>(&s), static_cast<const void*>(&zero), sizeof s) == 0);
+  defaults(nullptr);
+}
+
+// 0.5 on a sphere of the radius, a ramp of six voxels across it.
+Volume edged_ball(int64_t n, double radius) {
+  Volume volume = empty_volume({n, n, n}, {1, 1, 1});
+  const double middle = static_cast<double>(n - 1) / 2;
+  volume.values.clear();
+  for (int64_t z = 0; z < n; ++z) {
+    for (int64_t y = 0; y < n; ++y) {
+      for (int64_t x = 0; x < n; ++x) {
+        const double distance =
+            std::hypot(static_cast<double>(x) - middle, static_cast<double>(y) - middle,
+                       static_cast<double>(z) - middle);
+        volume.values.push_back(
+            static_cast<float>(std::clamp(0.5 + (radius - distance) / 6, 0.0, 1.0)));
+      }
+    }
+  }
+  return volume;
+}
+
+}  // namespace
+
+TEST_CASE("every status has a text of its own, and what is no status has one, too",
+          "[pellicle_outputs]") {
+  std::set<std::string> texts;
+  for (int status = PLC_OK; status <= PLC_INTERNAL; ++status) {
+    texts.insert(plc_status_string(static_cast<plc_status>(status)));
+  }
+  CHECK(texts.size() == 6);
+  CHECK(texts.count("out of memory") == 1);
+  CHECK(texts.count("") == 0);
+  for (const int status : {-1, PLC_INTERNAL + 1, INT_MIN, INT_MAX}) {
+    CHECK(std::string(plc_status_string(static_cast<plc_status>(status))) ==
+          "not a status of this version of the library");
+  }
+}
+
+TEST_CASE("structs that are only written start with their size and nothing else",
+          "[pellicle_outputs]") {
+  require_cleared(plc_pyramid_level_defaults);
+  require_cleared(plc_run_state_defaults);
+  require_cleared(plc_measures_defaults);
+  require_cleared(plc_level_report_defaults);
+  require_cleared(plc_seconds_defaults);
+  require_cleared(plc_check_defaults);
+  require_cleared(plc_component_measures_defaults);
+  require_cleared(plc_distances_defaults);
+}
+
+TEST_CASE("a surface tells whether it came to rest", "[pellicle_outputs]") {
+  const Context context = make_context();
+  const Volume volume = ball({24, 24, 24});
+  const plc_image image = image_of(volume);
+  plc_parameters p = parameters(0.5, 1);
+  CHECK(plc_surface_converged(extract(context.get(), image, p).get()) == 1);
+  p.max_iterations = 3;
+  CHECK(plc_surface_converged(extract(context.get(), image, p).get()) == 0);
+  CHECK(plc_surface_converged(nullptr) == 0);
+}
+
+TEST_CASE("the surface of a run has not converged before its level ends", "[pellicle_outputs]") {
+  const Scene s;
+  const Context context = make_context();
+  const PyramidHandle pyramid = pyramid_of(context.get(), s.image, s.parameters);
+  const RunHandle run = run_of(context.get(), pyramid.get(), s.parameters);
+  const auto converged = [&] {
+    return plc_surface_converged(surface_of(context.get(), run.get()).get());
+  };
+  CHECK(converged() == 0);
+  advance(context.get(), run.get(), PLC_ONE_ITERATION);
+  CHECK(converged() == 0);
+  advance(context.get(), run.get(), PLC_ONE_LEVEL);
+  CHECK(converged() == 1);
+  advance(context.get(), run.get(), PLC_ONE_ITERATION);
+  CHECK(converged() == 0);
+  advance(context.get(), run.get(), PLC_ALL_LEVELS);
+  CHECK(converged() == 1);
+}
+
+TEST_CASE("edges are as long as the header says", "[pellicle_outputs]") {
+  const Context context = make_context();
+  const auto check_of = [&](double radius, double voxel, plc_mesh_kind mesh, double& tolerance) {
+    const auto n = static_cast<int64_t>(2 * radius) + 12;
+    const Volume volume = edged_ball(n, radius);
+    plc_image image = image_of(volume);
+    for (double& side : image.spacing) side = voxel;
+    plc_parameters p = parameters(0.5, 2);
+    p.mesh = mesh;
+    const Surface surface = extract(context.get(), image, p);
+    tolerance = parameters_of(surface.get()).tolerance;
+    plc_check check;
+    plc_check_defaults(&check);
+    REQUIRE(plc_surface_check(context.get(), surface.get(), &check) == PLC_OK);
+    return check;
+  };
+  double tolerance = 0;
+  for (const double voxel : {1.0, 0.3}) {
+    const plc_check uniform = check_of(10, voxel, PLC_MESH_UNIFORM, tolerance);
+    CHECK(uniform.edge_min > 0.83 * voxel);
+    CHECK(uniform.edge_max < 2.09 * voxel);
+    CHECK(uniform.edge_mean > 1.1 * voxel);
+    CHECK(uniform.edge_mean < 1.5 * voxel);
+    for (const double radius : {10.0, 20.0}) {
+      const plc_check adaptive = check_of(radius, voxel, PLC_MESH_ADAPTIVE, tolerance);
+      CHECK(tolerance == Approx(voxel / 24));
+      CHECK(adaptive.edge_mean == Approx(3 * std::sqrt(tolerance * radius * voxel)).epsilon(0.15));
+    }
+  }
+}
