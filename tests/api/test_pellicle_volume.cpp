@@ -165,7 +165,7 @@ TEST_CASE("2^31 voxels and more are refused by the pyramid without an image's me
   plc_volume* volume = nullptr;
   CHECK(plc_volume_create(context.get(), &image, PLC_BORROW, &volume) == PLC_OUT_OF_MEMORY);
   CHECK(std::string(plc_context_message(context.get())) ==
-        "out of memory: 2048 MiB were asked for, 0 bytes are in use, the limit is 256 MiB");
+        "out of memory: 2049 MiB were asked for, 0 bytes are in use, the limit is 256 MiB");
   int64_t now = -1;
   REQUIRE(plc_context_memory(context.get(), &now, nullptr) == PLC_OK);
   CHECK(now == 0);
