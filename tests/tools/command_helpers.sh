@@ -1,6 +1,11 @@
-# For the tests of the command: sourced in a folder that has out/, with $pellicle set.
+# For the tests of the command: sourced with $pellicle set. The test goes on in a folder of its own, $here,
+# which has out/ in it and is removed at the end.
 # shellcheck shell=bash
 failures=0
+here=$(mktemp -d)
+trap 'rm -rf "$here"' EXIT
+cd "$here" || exit 1
+mkdir out
 
 fails() {
   echo "FAILED: $1"

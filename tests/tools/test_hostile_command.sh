@@ -5,10 +5,6 @@
 set -uo pipefail
 pellicle=$(realpath "$1")
 tests=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
-here=$(mktemp -d)
-trap 'rm -rf "$here"' EXIT
-cd "$here" || exit 1
-mkdir out
 # shellcheck source=tests/tools/command_helpers.sh
 source "$tests/tools/command_helpers.sh"
 

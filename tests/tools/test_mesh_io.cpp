@@ -11,10 +11,12 @@
 #include "tests/samples/sample_files.h"
 #include "tests/samples/sample_meshes.h"
 #include "tests/tools/tool_fixtures.h"
+#include "tools/mesh/base64.h"
 
 namespace {
 
 using fixtures::failure_of;
+using plc::tools::encode_base64;
 using plc::tools::read_mesh;
 using plc::tools::TriangleMesh;
 using plc::tools::write_mesh;
@@ -56,21 +58,6 @@ std::string swapped(std::vector<T> values) {
   return out;
 }
 
-std::string base64(const std::string& data) {
-  const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (size_t i = 0; i < data.size(); i += 3) {
-    uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k) {
-      group = group << 8 | (i + k < data.size() ? static_cast<unsigned char>(data[i + k]) : 0U);
-    }
-    for (size_t k = 0; k < 4; ++k) {
-      out += i + k > data.size() ? '=' : digits[group >> (18 - 6 * k) & 63];
-    }
-  }
-  return out;
-}
-
 // A PolyData file whose arrays are given as the attributes and the text of their elements.
 struct Arrays {
   std::string points, connectivity, offsets;
@@ -103,7 +90,7 @@ std::string packed(const std::string& data, bool as_base64) {
   const auto size = static_cast<uint32_t>(data.size());
   const std::string header =
       samples::raw<uint32_t>({1, size, 0, static_cast<uint32_t>(block.size())});
-  return as_base64 ? base64(header) + base64(block) : header + block;
+  return as_base64 ? encode_base64(header) + encode_base64(block) : header + block;
 }
 
 std::string inline_array(const std::string& format, const std::string& text) {
@@ -317,7 +304,9 @@ TEST_CASE("VTP is read in every encoding", "[mesh_io]") {
              inline_array("ascii", "4")},
             "Polys"));
   const auto binary = [](const std::string& text) { return inline_array("binary", "\n " + text); };
-  check(vtp("", {binary(base64(sized(p))), binary(base64(sized(c))), binary(base64(sized(o)))},
+  check(vtp("",
+            {binary(encode_base64(sized(p))), binary(encode_base64(sized(c))),
+             binary(encode_base64(sized(o)))},
             "Polys"));
   const std::string zlib = "compressor=\"vtkZLibDataCompressor\"";
   check(vtp(zlib, {binary(packed(p, true)), binary(packed(c, true)), binary(packed(o, true))},
@@ -332,7 +321,8 @@ TEST_CASE("VTP is read in every encoding", "[mesh_io]") {
                "<AppendedData encoding=\"" + encoding + "\">\n _" + a + b + d + "</AppendedData>");
   };
   check(appended_file("", "raw", sized(p), sized(c), sized(o)));
-  check(appended_file("", "base64", base64(sized(p)), base64(sized(c)), base64(sized(o))));
+  check(appended_file("", "base64", encode_base64(sized(p)), encode_base64(sized(c)),
+                      encode_base64(sized(o))));
   check(appended_file(zlib, "raw", packed(p, false), packed(c, false), packed(o, false)));
   check(appended_file(zlib, "base64", packed(p, true), packed(c, true), packed(o, true)));
 }
@@ -414,10 +404,11 @@ TEST_CASE("Counts that lie do not reserve memory", "[mesh_io]") {
       "property list uint int vertex_indices\nend_header\n\xff\xff\xff\xff";
   CHECK_THAT(message("c.ply", list), Catch::Contains("truncated"));
   const auto binary = [](const std::string& text) { return inline_array("binary", text); };
-  const std::string wild = base64(samples::raw<uint32_t>({0xfffffff0U, 0, 0}));
+  const std::string wild = encode_base64(samples::raw<uint32_t>({0xfffffff0U, 0, 0}));
   CHECK_THAT(message("a.vtp", vtp("", {binary(wild), binary(wild), binary(wild)}, "Polys")),
              Catch::Contains("truncated"));
-  const std::string bomb = base64(samples::raw<uint32_t>({3, 0x7fffffffU, 0, 4, 4, 4, 1, 2, 3}));
+  const std::string bomb =
+      encode_base64(samples::raw<uint32_t>({3, 0x7fffffffU, 0, 4, 4, 4, 1, 2, 3}));
   CHECK_FALSE(message("b.vtp", vtp("compressor=\"vtkZLibDataCompressor\"",
                                    {binary(bomb), binary(bomb), binary(bomb)}, "Polys"))
                   .empty());

@@ -7,10 +7,6 @@ pellicle=$(realpath "$1")
 contours=$(realpath "$2")
 npm=$(realpath "$3")
 tests=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
-here=$(mktemp -d)
-trap 'rm -rf "$here"' EXIT
-cd "$here" || exit 1
-mkdir out
 # shellcheck source=tests/tools/command_helpers.sh
 source "$tests/tools/command_helpers.sh"
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "tools/file/failure.h"
+#include "tools/volume/voxels.h"
 
 namespace plc::tools {
 
@@ -20,29 +21,12 @@ ExtractJob job_of(const ExtractOptions& options, const plc_parameters& parameter
           false};
 }
 
-template <typename T>
 int64_t object_voxels(const plc_image& image, double iso, bool inside_below) {
-  const T* v = static_cast<const T*>(image.voxels);
-  const int64_t n = image.dims[0] * image.dims[1] * image.dims[2];
-  return std::count_if(v, v + n, [&](T x) {
-    return inside_below ? static_cast<double>(x) <= iso : static_cast<double>(x) >= iso;
+  return with_voxels(image, [&](const auto* first, const auto* last) -> int64_t {
+    return std::count_if(first, last, [&](auto x) {
+      return inside_below ? static_cast<double>(x) <= iso : static_cast<double>(x) >= iso;
+    });
   });
-}
-
-int64_t object_voxels(const plc_image& image, double iso, bool inside_below) {
-  switch (image.type) {
-    case PLC_U8:
-      return object_voxels<uint8_t>(image, iso, inside_below);
-    case PLC_I16:
-      return object_voxels<int16_t>(image, iso, inside_below);
-    case PLC_U16:
-      return object_voxels<uint16_t>(image, iso, inside_below);
-    case PLC_I32:
-      return object_voxels<int32_t>(image, iso, inside_below);
-    case PLC_F32:
-      return object_voxels<float>(image, iso, inside_below);
-  }
-  return 0;
 }
 
 void check_paths(const std::vector<ExtractJob>& jobs) {

@@ -5,55 +5,21 @@
 #include <cstddef>
 #include <limits>
 
+#include "tools/volume/volume_statistics.h"
+#include "tools/volume/voxels.h"
+
 namespace plc::tools {
 
 namespace {
 
-constexpr double kCut = 0.0001;      // part of the voxels that the window leaves out at each end
+constexpr double kCut = 0.01;  // per cent of the voxels that the window leaves out at each end
 constexpr double kExactRange = 255;  // of integers that 8 bits hold as they are
-constexpr size_t kMaxSamples = 1 << 20;
 
-size_t count_of(const std::array<int64_t, 3>& dims) {
-  return static_cast<size_t>(dims[0] * dims[1] * dims[2]);
-}
-
-template <typename T>
-struct Voxels {
-  const T* values;
-  size_t count;
-
-  // Calls visit(value) for every voxel whose value is finite.
-  template <typename Visit>
-  void each(const Visit& visit) const {
-    for (size_t i = 0; i < count; ++i) {
-      const auto value = static_cast<double>(values[i]);
-      if (std::isfinite(value)) visit(value);
-    }
-  }
-};
-
-// Percentiles of a million voxels at most: a histogram would be all in one bin where a few voxels
-// are far from all others.
-template <typename T>
-GreyWindow derived_window(const Voxels<T>& voxels, double low, double high) {
+GreyWindow derived_window(const plc_image& image, double low, double high) {
   if (!(high > low)) return {low, low + kExactRange};
-  if (std::numeric_limits<T>::is_integer && high - low <= kExactRange) {
-    return {low, low + kExactRange};
-  }
-  const size_t stride = voxels.count / kMaxSamples | 1;  // odd: not along one column of the image
-  std::vector<double> samples;
-  for (size_t i = 0; i < voxels.count; i += stride) {
-    const auto value = static_cast<double>(voxels.values[i]);
-    if (std::isfinite(value)) samples.push_back(value);
-  }
-  const auto ranked = [&](double part) {
-    const auto rank = std::lround(part * static_cast<double>(samples.size() - 1));
-    std::nth_element(samples.begin(), samples.begin() + rank, samples.end());
-    return samples[static_cast<size_t>(rank)];
-  };
-  if (samples.empty()) return {low, high};
-  const GreyWindow window = {ranked(kCut), ranked(1 - kCut)};
-  return window.high > window.low ? window : GreyWindow{low, high};
+  if (image.type != PLC_F32 && high - low <= kExactRange) return {low, low + kExactRange};
+  const std::vector<double> cut = percentiles_of(image, {kCut, 100 - kCut});
+  return cut[1] > cut[0] ? GreyWindow{cut[0], cut[1]} : GreyWindow{low, high};
 }
 
 uint8_t grey(double value, const GreyWindow& window) {
@@ -66,7 +32,7 @@ uint8_t grey(double value, const GreyWindow& window) {
 template <typename T>
 std::vector<uint8_t> reduced(const T* values, const int64_t from[3], const GreyImage& to) {
   const auto& f = to.reduction;
-  std::vector<uint8_t> out(count_of(to.dims));
+  std::vector<uint8_t> out(static_cast<size_t>(to.dims[0] * to.dims[1] * to.dims[2]));
   std::vector<double> sums(static_cast<size_t>(to.dims[0]));
   size_t next = 0;
   for (int64_t z = 0; z < to.dims[2]; ++z) {
@@ -116,48 +82,25 @@ void choose_reduction(const plc_image& image, int64_t max_voxels, GreyImage& gre
   }
 }
 
-template <typename T>
-GreyImage made_of(const plc_image& image, const std::optional<GreyWindow>& window,
-                  int64_t max_voxels) {
-  const auto* values = static_cast<const T*>(image.voxels);
-  const Voxels<T> voxels{values, count_of({image.dims[0], image.dims[1], image.dims[2]})};
-  GreyImage grey;
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  voxels.each([&](double value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  });
-  if (low <= high) {
-    grey.low = low;
-    grey.high = high;
-  }
-  grey.window = window ? *window : derived_window(voxels, grey.low, grey.high);
-  choose_reduction(image, max_voxels, grey);
-  grey.voxels = reduced(values, image.dims, grey);
-  grey.exact = std::numeric_limits<T>::is_integer && !grey.reduced() && grey.window.step() == 1 &&
-               grey.window.low <= grey.low && grey.high <= grey.window.high &&
-               grey.window.low == std::floor(grey.window.low);
-  return grey;
-}
-
 }  // namespace
 
 GreyImage grey_image(const plc_image& image, const std::optional<GreyWindow>& window,
                      int64_t max_voxels) {
-  switch (image.type) {
-    case PLC_U8:
-      return made_of<uint8_t>(image, window, max_voxels);
-    case PLC_I16:
-      return made_of<int16_t>(image, window, max_voxels);
-    case PLC_U16:
-      return made_of<uint16_t>(image, window, max_voxels);
-    case PLC_I32:
-      return made_of<int32_t>(image, window, max_voxels);
-    case PLC_F32:
-      return made_of<float>(image, window, max_voxels);
+  GreyImage grey;
+  const VolumeRange range = range_of(image);
+  if (range.finite > 0) {
+    grey.low = range.low;
+    grey.high = range.high;
   }
-  return {};
+  grey.window = window ? *window : derived_window(image, grey.low, grey.high);
+  choose_reduction(image, max_voxels, grey);
+  grey.voxels = with_voxels(image, [&](const auto* first, const auto* /*last*/) {
+    return reduced(first, image.dims, grey);
+  });
+  grey.exact = image.type != PLC_F32 && !grey.reduced() && grey.window.step() == 1 &&
+               grey.window.low <= grey.low && grey.high <= grey.window.high &&
+               grey.window.low == std::floor(grey.window.low);
+  return grey;
 }
 
 }  // namespace plc::tools

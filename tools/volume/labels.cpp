@@ -7,30 +7,13 @@
 #include <unordered_map>
 
 #include "tools/file/failure.h"
+#include "tools/volume/voxels.h"
 
 namespace plc::tools {
 
 namespace {
 
 constexpr uint8_t kInside = 255;
-
-// `visit` gets the voxels by their type.
-template <typename Visit>
-auto with_voxels(const plc_image& image, const Visit& visit) {
-  switch (image.type) {
-    case PLC_U8:
-      return visit(static_cast<const uint8_t*>(image.voxels));
-    case PLC_I16:
-      return visit(static_cast<const int16_t*>(image.voxels));
-    case PLC_U16:
-      return visit(static_cast<const uint16_t*>(image.voxels));
-    case PLC_I32:
-      return visit(static_cast<const int32_t*>(image.voxels));
-    case PLC_F32:
-      break;
-  }
-  return visit(static_cast<const float*>(image.voxels));
-}
 
 template <typename T>
 int32_t label_value(const std::string& path, T voxel) {
@@ -97,7 +80,7 @@ void add_row(const std::string& path, const T* row, int64_t size, int64_t y, int
 
 std::vector<Label> find_labels(const std::string& path, const plc_image& image) {
   Table table(path);
-  with_voxels(image, [&](const auto* voxels) {
+  with_voxels(image, [&](const auto* voxels, const auto* /*last*/) {
     const int64_t* n = image.dims;
     for (int64_t z = 0; z < n[2]; ++z) {
       for (int64_t y = 0; y < n[1]; ++y) {
@@ -125,7 +108,7 @@ LabelCrop crop_label(const plc_image& image, const Label& label) {
     }
   }
   crop.voxels.resize(static_cast<size_t>(count));
-  with_voxels(image, [&](const auto* voxels) {
+  with_voxels(image, [&](const auto* voxels, const auto* /*last*/) {
     const int64_t* n = image.dims;
     const int64_t* m = crop.image.dims;
     using Voxel = std::remove_cv_t<std::remove_pointer_t<decltype(voxels)>>;

@@ -6,35 +6,14 @@
 #include <limits>
 #include <type_traits>
 
+#include "tools/volume/voxels.h"
+
 namespace plc::tools {
 
 namespace {
 
 constexpr size_t kBins = 65536;
 constexpr uint32_t kSign = 0x80000000U;
-
-// Calls visit(first, last) with the voxels in their type. They have no gaps.
-template <typename Visit>
-auto with_voxels(const plc_image& image, const Visit& visit) {
-  const auto count = static_cast<size_t>(image.dims[0] * image.dims[1] * image.dims[2]);
-  const auto span = [&]<typename T>(T) {
-    const T* first = static_cast<const T*>(image.voxels);
-    return visit(first, first + count);
-  };
-  switch (image.type) {
-    case PLC_U8:
-      return span(uint8_t{});
-    case PLC_I16:
-      return span(int16_t{});
-    case PLC_U16:
-      return span(uint16_t{});
-    case PLC_I32:
-      return span(int32_t{});
-    case PLC_F32:
-      break;
-  }
-  return span(float{});
-}
 
 template <typename T>
 bool is_finite(T value) {
