@@ -137,7 +137,9 @@ bool Dynamics::in_order(const Guide& guide) const {
 void Dynamics::begin_step(const Guide& guide, const Sleep* sleep) {
   resize(guide);
   choose_blocks(sleep);
-  time_step_ = stable_time_step(model_, guide.user == nullptr ? 0 : guide.user->stiffness());
+  Model stiff = model_;
+  stiff.curvature = curvature();
+  time_step_ = stable_time_step(stiff, guide.user == nullptr ? 0 : guide.user->stiffness());
 }
 
 void Dynamics::save(StateWriter& to) const {

@@ -52,7 +52,6 @@ float stable_time_step(const Model& model, float stiffness = 0);
 //                     mesh's positions, by swapping, and the other where the vertices were
 //   laplacian  16     laplacian, per stage
 //   force      12     forces, per stage; only with other forces than curvature and image
-//   sampled    16     forces, per stage; only of adaptive meshes with other forces than these two
 //   along      24     normals: unit normals of the metric and their steps; only with a metric
 //   user       12     user force, per stage; only where there is one
 //

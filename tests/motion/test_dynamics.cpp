@@ -416,6 +416,29 @@ TEST_CASE("stiff models stay bounded for hundreds of steps", "[dynamics]") {
   }
 }
 
+TEST_CASE("noise that makes an adaptive mesh stiff lowers its time step", "[dynamics]") {
+  const Image clean = ball();
+  Image noisy = clean;
+  samples::Random random(5);
+  for (float& value : noisy.values) value += static_cast<float>(random.uniform(-0.3, 0.3));
+  const plc::Schedule schedule(1);
+  plc::Sizing sizing;
+  sizing.object = {clean.view(), kIso, true};
+  plc::SizeSpec spec;
+  spec.finest = spec.coarsest = 1;
+  REQUIRE(sizing.field.build(noisy.view(), kIso, 1, spec, schedule).ok());
+  REQUIRE(sizing.field.noise() > plc::kMostNoise);
+  Model model;
+  model.curvature = 2;
+  Mesh mesh;
+  fill(mesh, 1, false);
+  mesh.sizing = &sizing;
+  plc::Dynamics dynamics(mesh, schedule, plc::best_simd_target(), model);
+  for (int i = 0; i < 300; ++i) step(mesh, dynamics, clean);
+  CHECK(dynamics.energy() < 1e-3);
+  for (uint32_t v = 0; v < mesh.slots(); ++v) CHECK(plc::length(mesh.at(v)) < 20);
+}
+
 TEST_CASE("a sphere in the potential of a ball settles on the iso-surface", "[dynamics]") {
   const Image image = ball();
   Model model;
