@@ -5,8 +5,8 @@
 #include "tests/samples/sample_files.h"
 #include "tests/samples/sample_meshes.h"
 #include "tests/tools/tool_fixtures.h"
+#include "tools/file/base64.h"
 #include "tools/file/text.h"
-#include "tools/mesh/base64.h"
 #include "tools/mesh/mesh_io.h"
 #include "tools/mesh/vertex_colours.h"
 
@@ -218,6 +218,12 @@ TEST_CASE("A GLB holds the mesh, its place in metres, its values and their colou
   CHECK(two.substr(0, 4) == two.substr(8, 4));
   CHECK(two.substr(0, 4) != two.substr(4, 4));
 
+  mesh.scalars = {{"Height", heights}, {"height", labels}};
+  write_mesh(folder / "c.glb", mesh);
+  const Glb both = parts_of(fixtures::contents(folder / "c.glb"));
+  CHECK(attribute(both, "_HEIGHT") == samples::raw(heights));
+  CHECK(attribute(both, "_HEIGHT_2") == samples::raw(labels));
+
   write_mesh(folder / "empty.glb", {});
   CHECK(parts_of(fixtures::contents(folder / "empty.glb")).block.empty());
 }
@@ -253,12 +259,34 @@ TEST_CASE("The same mesh makes the same bytes in every format", "[mesh_formats]"
 TEST_CASE("Labels have colours of their own, and no value is grey", "[mesh_formats]") {
   using plc::tools::label_colour;
   using plc::tools::value_colour;
-  for (uint32_t a = 0; a < 30; ++a) {
-    for (uint32_t b = 0; b < a; ++b) CHECK(label_colour(a) != label_colour(b));
+  for (int32_t a = 0; a < 30; ++a) {
+    for (int32_t b = 0; b < a; ++b) CHECK(label_colour(a) != label_colour(b));
     for (const double part : label_colour(a)) CHECK((part >= 0 && part <= 1));
   }
   CHECK(value_colour(std::numeric_limits<double>::quiet_NaN()) == label_colour(0));
   CHECK(value_colour(-1) == value_colour(0));
   CHECK(value_colour(0)[2] > value_colour(0)[1]);
   CHECK(value_colour(2)[0] > value_colour(2)[2]);
+}
+
+TEST_CASE("Labels are integers by that name, whatever a file says", "[mesh_formats]") {
+  using plc::tools::Scalars;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  CHECK(Scalars{"Label", {1, -3, nan}}.are_labels());
+  CHECK(Scalars{"tissue_labels", {1, 2}}.are_labels());
+  CHECK_FALSE(Scalars{"Label", {1, 1.5F}}.are_labels());
+  CHECK_FALSE(Scalars{"Label", {1, 1e20F}}.are_labels());
+  CHECK_FALSE(Scalars{"Height", {1, 2}}.are_labels());
+  const fixtures::Folder folder;
+  TriangleMesh mesh = cube("LPS");
+  std::vector<float> wild(mesh.xyz.size() / 3, 1e20F);
+  wild[0] = nan;
+  mesh.scalars = {{"Label", wild}};
+  write_mesh(folder / "a.gii", mesh);
+  CHECK(read_mesh(folder / "a.gii").scalars[0].values[1] == 1e20F);
+  wild.assign(wild.size(), 4);
+  wild[0] = nan;
+  mesh.scalars = {{"Label", wild}};
+  write_mesh(folder / "b.gii", mesh);
+  CHECK(read_mesh(folder / "b.gii").scalars[0].values[0] == 0);
 }

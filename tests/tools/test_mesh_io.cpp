@@ -11,7 +11,7 @@
 #include "tests/samples/sample_files.h"
 #include "tests/samples/sample_meshes.h"
 #include "tests/tools/tool_fixtures.h"
-#include "tools/mesh/base64.h"
+#include "tools/file/base64.h"
 
 namespace {
 

@@ -1,5 +1,6 @@
 #include "tests/tools/plane_contours.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <numbers>
 
@@ -14,8 +15,16 @@ plc::tools::TriangleMesh mesh_of(const samples::Soup& soup) {
   return mesh;
 }
 
-plc::tools::ImageFrame turned_frame() {
-  return {{0, -2, 0, 3, 0, 0, 0, 0, 0.5}, {5, -1, 2}};
+plc_image turned_image() {
+  plc_image image;
+  plc_image_defaults(&image);
+  const double direction[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+  const double spacing[3] = {3, 2, 0.5};
+  const double origin[3] = {5, -1, 2};
+  std::copy(direction, direction + 9, image.direction);
+  std::copy(spacing, spacing + 3, image.spacing);
+  std::copy(origin, origin + 3, image.origin);
+  return image;
 }
 
 }  // namespace
@@ -23,14 +32,14 @@ plc::tools::ImageFrame turned_frame() {
 TEST_CASE("a slice of a sphere is a circle in the plane of the slice", "[view]") {
   const double radius = 10;
   const auto mesh = mesh_of(samples::moved(samples::sphere(6), 5, -1, 2, radius));
-  const auto frame = turned_frame();
+  const plc_image image = turned_image();
   for (size_t axis = 0; axis < 3; ++axis) {
     const double k = 0.37;  // through no vertex
     const double spacing = std::array<double, 3>{3, 2, 0.5}[axis];
-    const auto segments = samples::plane_contours(mesh, frame, axis, k);
+    const auto segments = samples::plane_contours(mesh, image, axis, k);
     REQUIRE(segments.size() > 50);
     for (const auto& segment : segments) {
-      for (const auto& end : segment) CHECK(frame.to_voxel(end)[axis] == Approx(k));
+      for (const auto& end : segment) CHECK(plc::tools::voxel_of(image, end)[axis] == Approx(k));
     }
     const double circle =
         2 * std::numbers::pi * std::sqrt(radius * radius - k * k * spacing * spacing);
@@ -40,8 +49,9 @@ TEST_CASE("a slice of a sphere is a circle in the plane of the slice", "[view]")
 
 TEST_CASE("contours are closed, and there are none beside the mesh", "[view]") {
   const auto mesh = mesh_of(samples::torus(40, 20, 8, 3));
-  const plc::tools::ImageFrame frame{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
-  const auto segments = samples::plane_contours(mesh, frame, 2, 0.5);
+  plc_image image;
+  plc_image_defaults(&image);
+  const auto segments = samples::plane_contours(mesh, image, 2, 0.5);
   REQUIRE(segments.size() > 50);
   for (const auto& segment : segments) {
     const auto& a = segment[0];
@@ -53,5 +63,5 @@ TEST_CASE("contours are closed, and there are none beside the mesh", "[view]") {
     }
     CHECK(shared == 2);
   }
-  CHECK(samples::plane_contours(mesh, frame, 2, 3.5).empty());
+  CHECK(samples::plane_contours(mesh, image, 2, 3.5).empty());
 }

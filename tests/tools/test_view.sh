@@ -44,6 +44,7 @@ view "a surface without faces" "empty.ply: has no face" oblique.mhd empty.ply
 view "a name of no format" "unknown format" oblique.mhd blobs.mhd
 view "an unknown space" "space" oblique.mhd surface.ply --space mni
 view "a window turned round" "window" oblique.mhd surface.ply --window 5,1
+view "a window without end" "window" oblique.mhd surface.ply --window=-1.7e308,1.7e308
 view "a window of words" "window" oblique.mhd surface.ply --window a,b
 view "no voxels" "max-voxels" oblique.mhd surface.ply --max-voxels 0
 view "an empty name" "empty" oblique.mhd ""
@@ -58,6 +59,13 @@ works "a surface here" 0 "$pellicle" view oblique.mhd surface.ply -o out/a.html
 cp inner.stl '<b>&"x.stl'
 works "a page" 0 "$pellicle" view oblique.mhd values.vtp '<b>&"x.stl' -o oblique.html
 says "a page" "256 greys" stdout
+# What a file says of its space goes before --space.
+works "a mesh in RAS" 0 "$pellicle" mesh surface.ply -o ras.ply --space ras
+works "a mesh in GIFTI" 0 "$pellicle" mesh surface.ply -o surface.gii
+for mesh in ras.ply surface.gii; do
+  works "a page of $mesh" 0 "$pellicle" view oblique.mhd $mesh --space ras -o named.html
+  if [ -s stderr ]; then fails "a page of $mesh: $(cat stderr)"; fi
+done
 works "a page in voxels" 0 "$pellicle" view sagittal.mhd voxels.ply --space voxel --window 100,900 -o sagittal.html
 works "a reduced page" 0 "$pellicle" view oblique.mhd surface.ply --max-voxels 9000 -o reduced.html
 says "a reduced page" "is reduced to 20 x 22 x 18 voxels, each the mean of 2 x 2 x 2" stdout

@@ -5,7 +5,6 @@
 
 #include "tests/samples/sample_meshes.h"
 #include "tests/tools/tool_fixtures.h"
-#include "tools/view/frame.h"
 #include "tools/view/packed.h"
 
 namespace {
@@ -39,27 +38,6 @@ plc_image turned_image() {
 
 }  // namespace
 
-TEST_CASE("voxels go to patient space and back", "[view]") {
-  const ImageFrame frame = frame_of(turned_image());
-  const Point lps = frame.to_lps({1, 2, 3});
-  CHECK(lps == Point{104, 48.5, -6});
-  const Point voxel = frame.to_voxel(lps);
-  for (size_t k = 0; k < 3; ++k) CHECK(voxel[k] == Approx(static_cast<double>(k + 1)));
-  CHECK(middle_of(turned_image()) == Point{119, 42.75, -2.5});
-}
-
-TEST_CASE("surfaces of all spaces end in LPS", "[view]") {
-  const plc_image image = turned_image();
-  for (const plc_space space : {PLC_SPACE_LPS, PLC_SPACE_RAS, PLC_SPACE_VOXEL}) {
-    TriangleMesh mesh = ball_at(1, 2, 3, 0.5);
-    place_surface("a.ply", image, space, mesh);
-    double x = 0;
-    for (size_t i = 0; i < mesh.xyz.size(); i += 3) x += mesh.xyz[i] * 3;
-    const double mean = x / static_cast<double>(mesh.xyz.size());
-    CHECK(mean == Approx(space == PLC_SPACE_LPS ? 1 : space == PLC_SPACE_RAS ? -1 : 104));
-  }
-}
-
 TEST_CASE("a surface beside the image is told from one that reaches into it", "[view]") {
   const plc_image image = turned_image();
   CHECK_FALSE(is_outside(image, ball_at(119, 42, -2, 3)));
@@ -69,15 +47,12 @@ TEST_CASE("a surface beside the image is told from one that reaches into it", "[
 }
 
 TEST_CASE("a surface that cannot be shown is refused by its name", "[view]") {
-  const plc_image image = turned_image();
   TriangleMesh empty;
-  CHECK(failure_of([&] { place_surface("a.ply", image, PLC_SPACE_LPS, empty); }) ==
+  CHECK(failure_of([&] { check_surface("a.ply", empty); }) ==
         "a.ply: has no face: there is nothing to show");
   TriangleMesh broken = ball_at(0, 0, 0, 1);
   broken.xyz[7] = std::numeric_limits<double>::quiet_NaN();
-  CHECK(failure_of([&] {
-          place_surface("a.ply", image, PLC_SPACE_LPS, broken);
-        }).find("a.ply: its point 2") == 0);
+  CHECK(failure_of([&] { check_surface("a.ply", broken); }).find("a.ply: its point 2") == 0);
 }
 
 TEST_CASE("no name ends the script element that it stands in, and the page is there whole",

@@ -6,7 +6,7 @@
 
 #include "tests/tools/plane_contours.h"
 #include "tools/file/failure.h"
-#include "tools/view/view_page.h"
+#include "tools/volume/mesh_spaces.h"
 #include "tools/volume/volume_io.h"
 
 int main(int argc, char** argv) {
@@ -15,14 +15,12 @@ int main(int argc, char** argv) {
     const plc::tools::LoadedVolume volume = plc::tools::read_volume(argv[1]);
     plc::tools::TriangleMesh mesh = plc::tools::read_mesh(argv[2]);
     const std::string space = argv[3];
-    plc::tools::place_surface(argv[2], volume.image,
-                              space == "voxel" ? PLC_SPACE_VOXEL
+    const plc_space assumed = space == "voxel" ? PLC_SPACE_VOXEL
                               : space == "ras" ? PLC_SPACE_RAS
-                                               : PLC_SPACE_LPS,
-                              mesh);
+                                               : PLC_SPACE_LPS;
+    plc::tools::bring_to(mesh, PLC_SPACE_LPS, assumed, &volume.image, argv[2]);
     const auto axis = static_cast<size_t>(std::atoi(argv[4]));
-    const auto segments =
-        samples::plane_contours(mesh, plc::tools::frame_of(volume.image), axis, std::atof(argv[5]));
+    const auto segments = samples::plane_contours(mesh, volume.image, axis, std::atof(argv[5]));
     std::printf("%.17g\n", samples::length_of(segments));
     for (const auto& [a, b] : segments) {
       std::printf("%.17g %.17g %.17g %.17g %.17g %.17g\n", a[0], a[1], a[2], b[0], b[1], b[2]);

@@ -11,11 +11,11 @@
 #include "tools/command/engine_handles.h"
 #include "tools/command/measure_report.h"
 #include "tools/command/mesh_precision.h"
-#include "tools/command/mesh_spaces.h"
 #include "tools/command/option_values.h"
 #include "tools/command/report.h"
 #include "tools/file/failure.h"
 #include "tools/mesh/mesh_io.h"
+#include "tools/volume/mesh_spaces.h"
 
 namespace plc::tools {
 

@@ -8,10 +8,10 @@
 #include "tools/command/engine_handles.h"
 #include "tools/command/extract_options.h"
 #include "tools/command/mesh_precision.h"
-#include "tools/command/mesh_spaces.h"
 #include "tools/command/option_values.h"
 #include "tools/mesh/mesh_bodies.h"
 #include "tools/mesh/mesh_io.h"
+#include "tools/volume/mesh_spaces.h"
 #include "tools/volume/volume_io.h"
 
 namespace plc::tools {

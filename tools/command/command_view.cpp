@@ -1,6 +1,7 @@
 #include "tools/command/command_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "tools/mesh/mesh_io.h"
 #include "tools/view/page_source.h"
 #include "tools/view/view_page.h"
+#include "tools/volume/mesh_spaces.h"
 #include "tools/volume/volume_io.h"
 #include "tools/volume/volume_io_memory.h"
 
@@ -78,7 +80,8 @@ std::vector<std::string> notes_of(const GreyImage& grey) {
 ViewedSurface read_surface(const std::string& path, const std::string& name,
                            const ViewOptions& options, const plc_image& image) {
   ViewedSurface surface{name, read_mesh(path)};
-  place_surface(path, image, options.space, surface.mesh);
+  bring_to(surface.mesh, PLC_SPACE_LPS, options.space, &image, path);
+  check_surface(path, surface.mesh);
   return surface;
 }
 
@@ -92,8 +95,9 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
       ->type_name("");
   command
       .add_option("SURFACE", options.surfaces,
-                  "Meshes: .stl, .ply, .obj, .off or .vtp; values at the vertices of a .ply or "
-                  ".vtp, as pellicle measure writes them, can be shown as colours")
+                  "Meshes: " + mesh_suffixes(false) +
+                      "; values at their vertices, as pellicle measure writes them, can be shown "
+                      "as colours")
       ->type_name("");
   command
       .add_option("-o,--output", options.output,
@@ -104,14 +108,17 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
                         const std::string& meaning, auto read) {
     return command.add_option_function<std::string>(name, read, meaning)->type_name(type);
   };
-  text("--space", "lps|ras|voxel", "Coordinates of the meshes, as of pellicle extract",
+  text("--space", "lps|ras|voxel",
+       "Coordinates of meshes whose files name no space, as of pellicle extract",
        [&](const std::string& s) { options.space = to_choice("--space", s, kSpaces); })
       ->default_str("lps");
   text("--window", "LOW,HIGH",
        "Values that the page can tell apart, in 256 steps (default: nearly all that the image has)",
        [&](const std::string& s) {
          const std::vector<double> v = to_numbers("--window", s, 2);
-         if (!(v[0] < v[1])) refuse_value("--window", s, "two values, the lower one first");
+         if (!(v[0] < v[1]) || !std::isfinite(v[1] - v[0])) {
+           refuse_value("--window", s, "two values, the lower one first");
+         }
          options.window = GreyWindow{v[0], v[1]};
        });
   text("--max-voxels", "N", "An image of more is reduced: voxels of the page are means of several",

@@ -1,6 +1,6 @@
 #include "tools/command/extract_inputs.h"
 
-#include "tools/command/mesh_spaces.h"
+#include "tools/volume/mesh_spaces.h"
 
 namespace plc::tools {
 

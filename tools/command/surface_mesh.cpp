@@ -1,7 +1,7 @@
 #include "tools/command/surface_mesh.h"
 
 #include "tools/command/engine_handles.h"
-#include "tools/command/mesh_spaces.h"
+#include "tools/volume/mesh_spaces.h"
 
 namespace plc::tools {
 

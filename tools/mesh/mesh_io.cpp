@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -152,6 +153,17 @@ std::string space_in(std::string_view comment) {
     if (comment.find(std::string("SPACE=") + name) != std::string_view::npos) return name;
   }
   return {};
+}
+
+bool Scalars::are_labels() const {
+  constexpr float kMost = 1 << 24;
+  std::string lower = name;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower.find("label") != std::string::npos &&
+         std::all_of(values.begin(), values.end(), [](float x) {
+           return !std::isfinite(x) || (x == std::trunc(x) && std::abs(x) <= kMost);
+         });
 }
 
 bool is_scalar_name(std::string_view name) {

@@ -16,7 +16,9 @@ namespace plc::tools {
 struct Scalars {
   std::string name;  // letters, digits and _
   std::vector<float> values;
-  bool are_labels() const { return name == kLabels; }  // of parts, not measures
+  // Of parts, not measures: the name has "label" in it, in whatever case, and all values that there
+  // are are integers that a float holds exactly.
+  bool are_labels() const;
 
   static constexpr const char* kLabels = "Label";
 };

@@ -9,13 +9,13 @@
 #include <limits>
 #include <vector>
 
+#include "tools/file/base64.h"
 #include "tools/file/checked_sizes.h"
 #include "tools/file/failure.h"
 #include "tools/file/memory.h"
 #include "tools/file/printable.h"
 #include "tools/file/text.h"
 #include "tools/file/xml_reader.h"
-#include "tools/mesh/base64.h"
 #include "tools/mesh/mesh_io_formats.h"
 
 namespace plc::tools {
@@ -291,7 +291,7 @@ void write_gifti(AtomicFile& file, const TriangleMesh& mesh) {
     const bool labels = scalars.are_labels();
     for (const float value : scalars.values) {
       if (labels) {
-        put_value(data, static_cast<int32_t>(value));
+        put_value(data, std::isfinite(value) ? static_cast<int32_t>(value) : 0);
       } else {
         put_value(data, value);
       }

@@ -104,10 +104,12 @@ Json primitive_of(Arrays& arrays, const TriangleMesh& mesh) {
     std::string name = "_" + scalars.name;  // as an application's own must begin, in capitals
     std::transform(name.begin(), name.end(), name.begin(),
                    [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; });
+    std::string free = name;  // names that differ in case alone are one then
+    for (int k = 2; attributes.contains(free); ++k) free = name + "_" + std::to_string(k);
     // glTF has no NaN.
     std::vector<float> values = scalars.values;
     for (float& value : values) value = std::isfinite(value) ? value : 0;
-    attributes[name] = arrays.add<float>("SCALAR", kFloat, kArrayBuffer, vertices, values);
+    attributes[free] = arrays.add<float>("SCALAR", kFloat, kArrayBuffer, vertices, values);
   }
   const int corners =
       arrays.add<uint32_t>("SCALAR", kUnsignedInt, kElementArrayBuffer, mesh.abc.size(), mesh.abc);

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "tools/file/base64.h"
 #include "tools/file/checked_sizes.h"
 #include "tools/file/failure.h"
 #include "tools/file/memory.h"
 #include "tools/file/printable.h"
 #include "tools/file/text.h"
-#include "tools/mesh/base64.h"
 
 namespace plc::tools {
 namespace {

@@ -21,25 +21,23 @@ constexpr std::array<Rgb, 9> kViridis = {{{0.0579, 0.0004, 0.0884},
                                           {0.4173, 0.7180, 0.0301},
                                           {0.9841, 0.7993, 0.0183}}};
 
-// HSV with S = 0.9 and V = 0.8.
-Rgb hue_colour(double hue) {
-  constexpr double kValue = 0.8;
-  constexpr double kSaturation = 0.9;
-  Rgb rgb{};
-  for (size_t k = 0; k < 3; ++k) {
-    const double turn = std::fmod(hue * 6 + (k == 0 ? 5.0 : k == 1 ? 3.0 : 1.0), 6);
-    rgb[k] = kValue * (1 - kSaturation * std::clamp(std::min(turn, 4 - turn), 0.0, 1.0));
-  }
-  return rgb;
+double linear(double part) {  // of sRGB
+  return part <= 0.04045 ? part / 12.92 : std::pow((part + 0.055) / 1.055, 2.4);
 }
 
 }  // namespace
 
-Rgb label_colour(uint32_t label) {
-  if (label == 0) return kGrey;
-  constexpr double kGolden = 0.6180339887498949;  // turns of so much never come near each other
-  const double turns = kGolden * (label - 1);
-  return hue_colour(turns - std::floor(turns));
+// As the page has them (tools/view/page/colours.js).
+Rgb label_colour(int32_t label) {
+  if (label <= 0) return kGrey;
+  constexpr double kGolden = 137.508;  // degrees: turns of so much never come near each other
+  const double hue = std::fmod(label * kGolden, 360);
+  Rgb rgb{};
+  for (size_t k = 0; k < 3; ++k) {
+    const double turn = std::fmod((k == 0 ? 0.0 : k == 1 ? 8.0 : 4.0) + hue / 30, 12);
+    rgb[k] = linear(0.62 - 0.32 * std::clamp(std::min(turn - 3, 9 - turn), -1.0, 1.0));
+  }
+  return rgb;
 }
 
 Rgb value_colour(double place) {
@@ -68,9 +66,10 @@ std::vector<Rgb> vertex_colours(const Scalars& scalars) {
   colours.reserve(scalars.values.size());
   const ColourRange range = colour_range(scalars);
   const double width = range.high > range.low ? range.high - range.low : 1;
+  const bool labels = scalars.are_labels();
   for (const float value : scalars.values) {
-    if (scalars.are_labels()) {
-      colours.push_back(label_colour(value >= 1 ? static_cast<uint32_t>(value) : 0));
+    if (labels) {
+      colours.push_back(label_colour(std::isfinite(value) ? static_cast<int32_t>(value) : 0));
     } else {
       colours.push_back(value_colour((static_cast<double>(value) - range.low) / width));
     }

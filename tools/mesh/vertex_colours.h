@@ -10,8 +10,8 @@ namespace plc::tools {
 
 using Rgb = std::array<double, 3>;  // linear, as glTF has them, 0 .. 1
 
-// Of a label: labels that follow each other are as far apart as hues can be. 0: grey.
-Rgb label_colour(uint32_t label);
+// Of a label: labels that follow each other are far apart in hue. 0 and less: grey.
+Rgb label_colour(int32_t label);
 
 // From dark blue over green to yellow (viridis) for 0 .. 1, which is held to; grey for NaN.
 Rgb value_colour(double place);

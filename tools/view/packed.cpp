@@ -7,6 +7,7 @@
 #include <limits>
 #include <new>
 
+#include "tools/file/base64.h"
 #include "tools/file/failure.h"
 
 namespace plc::tools {
@@ -14,24 +15,6 @@ namespace plc::tools {
 namespace {
 
 constexpr int kLevel = 6;  // of zlib: 9 takes four times as long for a hundredth less
-
-std::string base64(const std::string& data) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((data.size() + 2) / 3 * 4);
-  for (size_t i = 0; i < data.size(); i += 3) {
-    const size_t left = std::min<size_t>(3, data.size() - i);
-    uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k) {
-      group = group << 8 | (k < left ? static_cast<uint8_t>(data[i + k]) : 0U);
-    }
-    for (size_t k = 0; k < 4; ++k) {
-      out += k <= left ? kDigits[group >> (18 - 6 * k) & 63U] : '=';
-    }
-  }
-  return out;
-}
 
 // By pieces: zlib counts what it is given at once in 32 bits.
 std::string deflated(const std::string& data) {
@@ -66,7 +49,7 @@ std::string packed_words(std::span<const uint32_t> words) {
   for (unsigned shift = 0; shift < 32; shift += 8) {
     for (const uint32_t word : words) bytes += static_cast<char>(word >> shift & 0xffU);
   }
-  return base64(deflated(bytes));
+  return encode_base64(deflated(bytes));
 }
 
 std::string packed_floats(std::span<const float> values) {
@@ -95,7 +78,7 @@ std::string packed_greys(std::span<const uint8_t> greys) {
     bytes[i] = static_cast<char>(static_cast<uint8_t>(greys[i] - last));
     last = greys[i];
   }
-  return base64(deflated(bytes));
+  return encode_base64(deflated(bytes));
 }
 
 }  // namespace plc::tools

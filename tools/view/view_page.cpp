@@ -7,8 +7,8 @@
 
 #include "tools/file/atomic_file.h"
 #include "tools/file/failure.h"
-#include "tools/view/frame.h"
 #include "tools/view/packed.h"
+#include "tools/volume/volume_frame.h"
 
 namespace plc::tools {
 
@@ -59,15 +59,30 @@ class PageData {
   int count_ = 0;
 };
 
-Json image_json(const ViewedScene& scene, const Point& middle, PageData& data) {
+// The middle of the image, in LPS.
+Place middle_of(const plc_image& image) {
+  Place voxel;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    voxel[axis] = static_cast<double>(image.dims[axis] - 1) / 2;
+  }
+  return lps_of(image, voxel);
+}
+
+// From voxels to mm, by rows.
+std::array<double, 9> matrix_of(const plc_image& image) {
+  std::array<double, 9> matrix{};
+  for (size_t i = 0; i < 9; ++i) matrix[i] = image.direction[i] * image.spacing[i % 3];
+  return matrix;
+}
+
+Json image_json(const ViewedScene& scene, const Place& middle, PageData& data) {
   const plc_image& image = scene.image;
   const GreyImage& grey = scene.grey;
-  const ImageFrame frame = frame_of(image);
   return {{"name", scene.name},
           {"dims", {image.dims[0], image.dims[1], image.dims[2]}},
           {"spacing", {image.spacing[0], image.spacing[1], image.spacing[2]}},
-          {"matrix", frame.matrix},
-          {"origin", frame.origin},
+          {"matrix", matrix_of(image)},
+          {"origin", {image.origin[0], image.origin[1], image.origin[2]}},
           {"middle", middle},
           {"exact", grey.exact},
           {"range", {grey.low, grey.high}},
@@ -78,7 +93,7 @@ Json image_json(const ViewedScene& scene, const Point& middle, PageData& data) {
 }
 
 // Relative to the middle of the image, where floats hold them to a few millionths of its size.
-Json surface_json(const ViewedSurface& surface, const Point& middle, PageData& data) {
+Json surface_json(const ViewedSurface& surface, const Place& middle, PageData& data) {
   const TriangleMesh& mesh = surface.mesh;
   const size_t count = mesh.xyz.size() / 3;
   std::vector<float> points(mesh.xyz.size());
@@ -99,31 +114,22 @@ Json surface_json(const ViewedSurface& surface, const Point& middle, PageData& d
 
 }  // namespace
 
-void place_surface(const std::string& path, const plc_image& image, plc_space space,
-                   TriangleMesh& mesh) {
+void check_surface(const std::string& path, const TriangleMesh& mesh) {
   if (mesh.abc.empty()) throw Failure{path + ": has no face: there is nothing to show"};
-  const ImageFrame frame = frame_of(image);
-  for (size_t i = 0; i + 2 < mesh.xyz.size(); i += 3) {
-    Point p = {mesh.xyz[i], mesh.xyz[i + 1], mesh.xyz[i + 2]};
-    if (space == PLC_SPACE_RAS) p = {-p[0], -p[1], p[2]};
-    if (space == PLC_SPACE_VOXEL) p = frame.to_lps(p);
-    for (size_t k = 0; k < 3; ++k) {
-      if (!(std::abs(p[k]) <= static_cast<double>(std::numeric_limits<float>::max()))) {
-        throw Failure{path + ": its point " + std::to_string(i / 3) + " is nowhere (" +
-                      std::to_string(p[k]) + ")"};
-      }
-      mesh.xyz[i + k] = p[k];
+  for (size_t i = 0; i < mesh.xyz.size(); ++i) {
+    if (!(std::abs(mesh.xyz[i]) <= static_cast<double>(std::numeric_limits<float>::max()))) {
+      throw Failure{path + ": its point " + std::to_string(i / 3) + " is nowhere (" +
+                    std::to_string(mesh.xyz[i]) + ")"};
     }
   }
 }
 
 bool is_outside(const plc_image& image, const TriangleMesh& mesh) {
   constexpr double kMost = std::numeric_limits<double>::max();
-  const ImageFrame frame = frame_of(image);
-  Point low = {kMost, kMost, kMost};
-  Point high = {-kMost, -kMost, -kMost};
+  Place low = {kMost, kMost, kMost};
+  Place high = {-kMost, -kMost, -kMost};
   for (size_t i = 0; i + 2 < mesh.xyz.size(); i += 3) {
-    const Point voxel = frame.to_voxel({mesh.xyz[i], mesh.xyz[i + 1], mesh.xyz[i + 2]});
+    const Place voxel = voxel_of(image, {mesh.xyz[i], mesh.xyz[i + 1], mesh.xyz[i + 2]});
     for (size_t axis = 0; axis < 3; ++axis) {
       low[axis] = std::min(low[axis], voxel[axis]);
       high[axis] = std::max(high[axis], voxel[axis]);
@@ -137,7 +143,7 @@ bool is_outside(const plc_image& image, const TriangleMesh& mesh) {
 
 uint64_t write_page(const std::string& path, const PageSource& source, const ViewedScene& scene) {
   PageData data(path, source);
-  const Point middle = middle_of(scene.image);
+  const Place middle = middle_of(scene.image);
   Json json = {{"version", scene.version}, {"notes", scene.notes}};
   json["image"] = image_json(scene, middle, data);
   json["surfaces"] = Json::array();

@@ -26,10 +26,9 @@ struct ViewedScene {
   std::string version;             // of the program
 };
 
-// Brings a surface from `space` to LPS. Throws Failure, which names `path`, where it has no face or
-// a coordinate that is not finite.
-void place_surface(const std::string& path, const plc_image& image, plc_space space,
-                   TriangleMesh& mesh);
+// Throws Failure, which names `path`, where the mesh has no face, or a coordinate that no float
+// holds.
+void check_surface(const std::string& path, const TriangleMesh& mesh);
 
 // Whether the box around a surface in LPS and the image have nothing in common.
 bool is_outside(const plc_image& image, const TriangleMesh& mesh);

@@ -20,6 +20,7 @@ function between(colours, t) {
 
 // Neighbouring labels differ in hue: by the golden angle.
 function labelColour(label) {
+  if (label <= 0) return NONE;
   const hue = (label * 137.508) % 360;
   const channel = (n) => {
     const k = (n + hue / 30) % 12;
@@ -33,7 +34,7 @@ export class Scale {
   constructor(name, values) {
     const known = values.filter((x) => Number.isFinite(x)).sort();
     const at = (part) => (known.length ? known[Math.round(part * (known.length - 1))] : 0);
-    this.labels = /label/i.test(name) && known.every(Number.isInteger);
+    this.labels = /label/i.test(name) && known.every((x) => Number.isInteger(x) && Math.abs(x) <= 2 ** 24);
     this.least = at(0);
     this.most = at(1);
     this.signed = this.least < 0 && this.most > 0;

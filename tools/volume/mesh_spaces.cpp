@@ -1,4 +1,4 @@
-#include "tools/command/mesh_spaces.h"
+#include "tools/volume/mesh_spaces.h"
 
 #include <cmath>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "tools/mesh/base64.h"
+#include "tools/file/base64.h"
 
 #include <algorithm>
 #include <cstdint>
