@@ -17,7 +17,7 @@ exact=' sqrt floor ceil trunc round rint nearbyint fabs fmod remainder ldexp sca
   nextafter copysign fmin fmax fdim ilogb logb lround llround lrint llrint fma '
 # What is told of a surface and never moves it: measures, and how far a run is.
 told=' curvature:atan2 edge_ring:atan2 mesh_check:atan2 progress_estimate:log progress_estimate:expm1 '
-told+='volume_frame:atan2 '
+told+='volume_frame:atan2 vertex_colours:pow '
 
 # "object function" for each function of the mathematical library that an object calls.
 calls() {
