@@ -23,8 +23,8 @@ int run(const std::string& path, const std::string& left_out) {
   const double built = plc::now();
   plc::Mesh mesh;
   std::vector<plc::LevelRecord> records;
-  bench::demand(plc::pyramidal_recover_shape(std::move(pyramid), spec, schedule,
-                                             plc::best_simd_target(), {}, mesh, records));
+  bench::demand(
+      plc::pyramidal_recover_shape(std::move(pyramid), spec, schedule, {}, mesh, records));
   std::printf("{\"seconds\": {\"pyramid\": %.6f, \"evolution\": %.6f}, \"hash\": \"%016llx\"}\n",
               built - start, plc::now() - built,
               static_cast<unsigned long long>(plc::state_hash(mesh)));

@@ -31,7 +31,6 @@ namespace {
 constexpr double kDelta = 1 / 1.2;    // voxels
 constexpr double kStartCell = 2.7;    // the iso-surface of such a lattice has as many vertices
 constexpr int kStartIterations = 25;  // until the edges are those of an evolution
-const plc::SimdTarget kSimd = plc::best_simd_target();
 // With the time step that the published results are of.
 constexpr plc::Model kModel{.time_step = 1};
 
@@ -125,7 +124,7 @@ void make_surface(const bench::Potential& potential, const plc::Guide& guide, in
   demand(plc::iso_surface({potential.view(lattice, kStartCell), bench::Potential::kIso, true},
                           schedule, mesh));
   mesh.renumber(plc::morton_order(mesh));
-  plc::Evolution evolution(mesh, schedule, kSimd, kModel);
+  plc::Evolution evolution(mesh, schedule, kModel);
   evolution.restart();
   plc::Seconds seconds;
   plc::OperationCounts counts;
@@ -173,7 +172,7 @@ void measure(const plc::Guide& guide, int threads, int iterations, std::FILE* fi
   plc::Mesh mesh;
   read_mesh(file, mesh);
   const uint32_t vertices = mesh.vertex_count();
-  plc::Evolution evolution(mesh, schedule, kSimd, kModel);
+  plc::Evolution evolution(mesh, schedule, kModel);
   evolution.restart();
   std::vector<Sample> samples;
   int64_t peak = 0;

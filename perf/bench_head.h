@@ -37,7 +37,7 @@ struct HeadVolume {
     }
     plc_parameters_defaults(&parameters);
     parameters.iso = kBone;
-    const auto range = plc::voxel_range(volume, schedule, plc::best_simd_target());
+    const auto range = plc::voxel_range(volume, schedule);
     demand(plc::derive_parameters(volume, range, schedule, parameters, background));
   }
 
@@ -45,11 +45,10 @@ struct HeadVolume {
   // done on it.
   plc::RecoverySpec prepare(const plc_parameters& p, const plc::Schedule& schedule,
                             plc::Pyramid& pyramid) const {
-    const plc::SimdTarget simd = plc::best_simd_target();
-    demand(plc::build_pyramid(volume, plc::pyramid_spec(p), schedule, simd, pyramid));
+    demand(plc::build_pyramid(volume, plc::pyramid_spec(p), schedule, pyramid));
     plc::RecoverySpec spec = plc::recovery_spec(p, pyramid.levels[0].unit);
     spec.isos = plc::covering_isos(pyramid, plc::normalised(p, kBone), true,
-                                   plc::level_iso_bound(p, background), schedule, simd);
+                                   plc::level_iso_bound(p, background), schedule);
     return spec;
   }
 };
@@ -77,14 +76,14 @@ struct Head {
     p.levels = kLevels;
     p.late_bubbles = 0;
     recovery = ct.prepare(p, schedule, pyramid);
-    recover(schedule, plc::best_simd_target());
+    recover(schedule);
     guide.image = plc::image_view(pyramid, 1, recovery.pad_voxels,
                                   plc::mesh_space(pyramid, 1, recovery.anisotropy));
     guide.iso = static_cast<float>(recovery.isos[1]);
   }
 
  private:
-  void recover(const plc::Schedule& schedule, plc::SimdTarget simd) {
+  void recover(const plc::Schedule& schedule) {
     plc::Mesh mesh;
     plc::RecoveryHooks hooks;
     hooks.progress = [&](const plc::RecoveryProgress& p) {
@@ -95,7 +94,7 @@ struct Head {
       return record.level == 1 ? plc::LevelVerdict::kStop : plc::LevelVerdict::kAccept;
     };
     std::vector<plc::LevelRecord> records;
-    demand(plc::pyramidal_recover_shape(pyramid, recovery, schedule, simd, hooks, mesh, records));
+    demand(plc::pyramidal_recover_shape(pyramid, recovery, schedule, hooks, mesh, records));
     copy_mesh(mesh, calm);
   }
 };

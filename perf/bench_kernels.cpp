@@ -162,9 +162,9 @@ uint64_t run_steps(Bench& b, plc::Dynamics& dynamics, int threads, double& took)
 void time_step(benchmark::State& state, Bench& b, SimdTarget simd, int threads,
                const plc::Model& model) {
   double took = 0;
-  const plc::Schedule one(1), many(threads);
-  plc::Dynamics scalar(b.mesh, one, SimdTarget::kScalar, model);
-  plc::Dynamics dynamics(b.mesh, many, simd, model);
+  const plc::Schedule one(1, SimdTarget::kScalar), many(threads, simd);
+  plc::Dynamics scalar(b.mesh, one, model);
+  plc::Dynamics dynamics(b.mesh, many, model);
   const uint64_t twin = run_steps(b, scalar, 1, took);
   uint64_t hash = 0;
   for (auto _ : state) {

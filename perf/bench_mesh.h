@@ -10,7 +10,6 @@
 #include "engine/recover/evolution.h"
 #include "engine/resolve/refinement.h"
 #include "engine/start/initial_surface.h"
-#include "kernels/simd.h"
 #include "pyramid/buffer.h"
 
 namespace bench {
@@ -84,7 +83,7 @@ inline plc::Mesh evolved_mesh(const Image& image, double shrink = 1) {
     require(plc::append_bubble(mesh, {centre[0], centre[1], centre[2]}, {kStart, kStart, kStart},
                                schedule));
   }
-  plc::Evolution evolution(mesh, schedule, plc::best_simd_target(), plc::Model{.time_step = 1});
+  plc::Evolution evolution(mesh, schedule, plc::Model{.time_step = 1});
   plc::Seconds seconds;
   plc::OperationCounts counts;
   evolution.restart();

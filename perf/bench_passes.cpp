@@ -32,8 +32,6 @@ using bench::Head;
 using plc::Mesh;
 using plc::Schedule;
 
-const plc::SimdTarget kSimd = plc::best_simd_target();
-
 // The hash of each benchmark, whatever the threads.
 class Results {
  public:
@@ -151,8 +149,8 @@ void add_edges(Suite& suite, const Mesh& start) {
       const size_t count = b.mesh.padded() / plc::kRingLanes;
       const auto look = [&](size_t, size_t begin, size_t end) {
         const plc::Blocks part{nullptr, end - begin, static_cast<uint32_t>(begin), count - end};
-        plc::kernels::edge_violations(kSimd, b.mesh.rings(), b.mesh.position.data(), least, most,
-                                      part, flags->data());
+        plc::kernels::edge_violations(b.schedule.simd(), b.mesh.rings(), b.mesh.position.data(),
+                                      least, most, part, flags->data());
       };
       return timed([&] { plc::run_blocks(b.schedule, count, plc::kTaskBlocks, look); });
     };
@@ -166,7 +164,7 @@ void add_dynamics(Suite& suite, const Mesh& start) {
   for (const bool whole : {false, true}) {
     suite.add(whole ? "movement" : "dynamics", start, [&suite, whole](Bench& b) {
       auto dynamics =
-          std::make_shared<plc::Dynamics>(b.mesh, b.schedule, kSimd, suite.head().recovery.model);
+          std::make_shared<plc::Dynamics>(b.mesh, b.schedule, suite.head().recovery.model);
       const auto measured = [&suite, dynamics, whole] {
         plc::Seconds seconds;
         const double all = timed([&] { (void)dynamics->step(suite.head().guide, seconds).ok(); });
@@ -189,8 +187,8 @@ void add_resolution(Suite& suite, const std::string& name, const Mesh& start) {
   suite.add(name, start, [](Bench& b) {
     struct Parts {
       explicit Parts(Bench& bench)
-          : detection(bench.mesh, bench.schedule, kSimd),
-            resolution(bench.mesh, bench.schedule, kSimd, detection) {}
+          : detection(bench.mesh, bench.schedule),
+            resolution(bench.mesh, bench.schedule, detection) {}
       plc::Detection detection;
       plc::Resolution resolution;
     };
@@ -214,7 +212,7 @@ void add_resolution(Suite& suite, const std::string& name, const Mesh& start) {
 // Around every vertex, for constraint (3) and for the motion guard.
 void add_look(Suite& suite, const Mesh& start) {
   suite.add("look", start, [](Bench& b) {
-    auto detection = std::make_shared<plc::Detection>(b.mesh, b.schedule, kSimd);
+    auto detection = std::make_shared<plc::Detection>(b.mesh, b.schedule);
     const auto prepare = [&b, detection] {
       b.restore();
       detection->restart();
@@ -233,9 +231,9 @@ void add_guard(Suite& suite, const Mesh& start) {
   suite.add("motion_guard", start, [&suite](Bench& b) {
     struct Parts {
       Parts(Bench& bench, const plc::Model& model)
-          : dynamics(bench.mesh, bench.schedule, kSimd, model),
-            detection(bench.mesh, bench.schedule, kSimd),
-            guard(bench.mesh, bench.schedule, kSimd) {}
+          : dynamics(bench.mesh, bench.schedule, model),
+            detection(bench.mesh, bench.schedule),
+            guard(bench.mesh, bench.schedule) {}
       plc::Dynamics dynamics;
       plc::Detection detection;
       plc::MotionGuard guard;
@@ -296,7 +294,7 @@ void add_topology(Suite& suite, const Mesh& start) {
 void add_iteration(Suite& suite, const std::string& name, const Mesh& start) {
   suite.add(name, start, [&suite](Bench& b) {
     auto evolution =
-        std::make_shared<plc::Evolution>(b.mesh, b.schedule, kSimd, suite.head().recovery.model);
+        std::make_shared<plc::Evolution>(b.mesh, b.schedule, suite.head().recovery.model);
     const auto prepare = [&b, evolution] {
       b.restore();
       b.wake();
@@ -336,8 +334,7 @@ void add_pyramid(Suite& suite, const Mesh& start) {
     const auto measured = [&suite, &b, pyramid] {
       const Head& head = suite.head();
       return timed([&] {
-        (void)plc::build_pyramid(head.ct.volume, head.pyramid_spec, b.schedule, kSimd, *pyramid)
-            .ok();
+        (void)plc::build_pyramid(head.ct.volume, head.pyramid_spec, b.schedule, *pyramid).ok();
       });
     };
     const auto hash = [pyramid] {

@@ -92,7 +92,7 @@ float window_value(const VolumeView& volume, const Window& window, double value)
 }
 
 void make_base_image(const VolumeView& volume, const Window& window, int64_t pad, double pad_value,
-                     const Executor& executor, SimdTarget simd, float* values) {
+                     const Executor& executor, float* values) {
   std::array<int64_t, 3> dims = volume.dims;
   for (int64_t& dim : dims) dim += 2 * pad;
   const auto count = static_cast<size_t>(volume.dims[0]);
@@ -103,7 +103,7 @@ void make_base_image(const VolumeView& volume, const Window& window, int64_t pad
   image.form = borrowed_form(volume, window, pad, pad_value);
   if (image.form.type != ImageType::kUnit) {
     for_rows(dims, executor, values, [&](int64_t y, int64_t z, float* row) {
-      kernels::image_rows(simd, image, z, y, y + 1, row);
+      kernels::image_rows(executor.simd(), image, z, y, y + 1, row);
     });
   } else if (within_floats(volume, window)) {
     const VoxelForm form = form_of(volume, window, pad, pad_value);
@@ -116,8 +116,8 @@ void make_base_image(const VolumeView& volume, const Window& window, int64_t pad
     });
   } else {
     const auto write = [&](size_t first, float* to) {
-      kernels::normalize_voxels(simd, volume.type, voxel_address(volume, first), count, window.low,
-                                window.scale(), to);
+      kernels::normalize_voxels(executor.simd(), volume.type, voxel_address(volume, first), count,
+                                window.low, window.scale(), to);
     };
     for_rows(dims, executor, values, [&](int64_t y, int64_t z, float* row) {
       write_row(volume, pad, border, y, z, write, row);
@@ -125,13 +125,13 @@ void make_base_image(const VolumeView& volume, const Window& window, int64_t pad
   }
 }
 
-VoxelRange voxel_range(const VolumeView& volume, const Executor& executor, SimdTarget simd) {
+VoxelRange voxel_range(const VolumeView& volume, const Executor& executor) {
   const auto count = static_cast<size_t>(volume.dims[0] * volume.dims[1] * volume.dims[2]);
   const size_t tasks = (count + kRangeVoxels - 1) / kRangeVoxels;
   std::vector<kernels::VoxelExtent> parts(tasks);
   executor.run(tasks, [&](size_t task) {
     const size_t begin = task * kRangeVoxels;
-    parts[task] = kernels::voxel_extent(simd, volume.type, voxel_address(volume, begin),
+    parts[task] = kernels::voxel_extent(executor.simd(), volume.type, voxel_address(volume, begin),
                                         std::min(kRangeVoxels, count - begin));
   });
   VoxelRange range;

@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "kernels/image.h"
-#include "kernels/simd.h"
 #include "pyramid/executor.h"
 #include "pyramid/volume.h"
 
@@ -29,6 +28,6 @@ float window_value(const VolumeView& volume, const Window& window, double value)
 // where there is one, and those of equal voxels of another type. Windows beyond the range of
 // floats, or of the integers that floats hold, are mapped by double arithmetic.
 void make_base_image(const VolumeView& volume, const Window& window, int64_t pad, double pad_value,
-                     const Executor& executor, SimdTarget simd, float* values);
+                     const Executor& executor, float* values);
 
 }  // namespace plc

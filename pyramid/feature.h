@@ -1,6 +1,5 @@
 // The image that attracts a snake to contours (paper, 3.8): the norm of a gradient.
 #pragma once
-#include "kernels/simd.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
 #include "pyramid/status.h"
@@ -18,6 +17,6 @@ namespace plc {
 // kInvalidArgument (sigma negative or not finite, or reaching beyond the extent of an axis),
 // kOutOfMemory; then `norm` is empty. The same bits for any executor and any target.
 Status gradient_norm(const VolumeView& volume, double sigma_mm, const Executor& executor,
-                     SimdTarget simd, Buffer<float>& norm);
+                     Buffer<float>& norm);
 
 }  // namespace plc

@@ -84,12 +84,13 @@ std::vector<float> gaussian_weights(double sigma) {
 
 bool convolve_gaussian(float* image, const std::array<int64_t, 3>& dims,
                        const std::array<double, 3>& sigma, const Executor& executor,
-                       SimdTarget simd, float* blurred) {
+                       float* blurred) {
   const AxisKernel x(sigma[0], dims[0]), y(sigma[1], dims[1]), z(sigma[2], dims[2]);
   const auto plane_size = static_cast<size_t>(dims[0] * dims[1]);
   const auto planes = static_cast<size_t>(dims[2]);
-  const bool planes_done = run_guarded(
-      executor, planes, [&](size_t k) { convolve_plane(x, y, simd, image + k * plane_size); });
+  const bool planes_done = run_guarded(executor, planes, [&](size_t k) {
+    convolve_plane(x, y, executor.simd(), image + k * plane_size);
+  });
   const size_t tasks = (plane_size + kColumnValues - 1) / kColumnValues;
   return planes_done && run_guarded(executor, tasks, [&](size_t task) {
            const size_t begin = task * kColumnValues;
@@ -97,8 +98,8 @@ bool convolve_gaussian(float* image, const std::array<int64_t, 3>& dims,
            std::vector<const float*> rows;
            for (size_t k = 0; k < planes; ++k) {
              rows_of(z, k, image, plane_size, rows);
-             kernels::weighted_rows(simd, z.weights.data(), z.weights.size(), rows.data(), begin,
-                                    end, blurred + k * plane_size);
+             kernels::weighted_rows(executor.simd(), z.weights.data(), z.weights.size(),
+                                    rows.data(), begin, end, blurred + k * plane_size);
            }
          });
 }

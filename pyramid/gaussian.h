@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernels/simd.h"
 #include "pyramid/executor.h"
 
 namespace plc {
@@ -22,6 +21,6 @@ std::vector<float> gaussian_weights(double sigma);
 // target.
 bool convolve_gaussian(float* image, const std::array<int64_t, 3>& dims,
                        const std::array<double, 3>& sigma, const Executor& executor,
-                       SimdTarget simd, float* blurred);
+                       float* blurred);
 
 }  // namespace plc

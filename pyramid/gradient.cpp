@@ -39,20 +39,19 @@ Status check_units(const std::array<double, 3>& voxel_length, double bound) {
   return {};
 }
 
-void copy_values(const PyramidLevel& level, const Executor& executor, SimdTarget simd,
-                 float* values) {
+void copy_values(const PyramidLevel& level, const Executor& executor, float* values) {
   const ImageView image = level_image(level);
   executor.run(static_cast<size_t>(level.dims[2]), [&](size_t z) {
     const size_t plane = static_cast<size_t>(level.dims[0]) * static_cast<size_t>(level.dims[1]);
-    kernels::image_rows(simd, image, static_cast<int64_t>(z), 0, level.dims[1], values + z * plane);
+    kernels::image_rows(executor.simd(), image, static_cast<int64_t>(z), 0, level.dims[1],
+                        values + z * plane);
   });
 }
 
 }  // namespace
 
 Status build_gradient(const PyramidLevel& level, const std::array<double, 3>& voxel_length,
-                      double bound, const Executor& executor, SimdTarget simd,
-                      Buffer<Float4>& gradient) {
+                      double bound, const Executor& executor, Buffer<Float4>& gradient) {
   gradient.clear();
   Status status = check_units(voxel_length, bound);
   if (!status.ok()) return status;
@@ -68,14 +67,13 @@ Status build_gradient(const PyramidLevel& level, const std::array<double, 3>& vo
     const float* values = level.values.data();
     if (level.borrowed != nullptr) {
       copy.resize_uninitialized(voxels);
-      copy_values(level, executor, simd, copy.data());
+      copy_values(level, executor, copy.data());
       values = copy.data();
     }
-    enough_memory =
-        sobel_image(values, level.dims, scale, executor, simd, [&](const GradientRow& row) {
-          kernels::bound_vectors(simd, row.gx, row.gy, row.gz, row.width, within_floats(bound),
-                                 gradient.data() + row.first);
-        });
+    enough_memory = sobel_image(values, level.dims, scale, executor, [&](const GradientRow& row) {
+      kernels::bound_vectors(executor.simd(), row.gx, row.gy, row.gz, row.width,
+                             within_floats(bound), gradient.data() + row.first);
+    });
   } catch (const std::bad_alloc&) {
     enough_memory = false;
   }

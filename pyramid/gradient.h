@@ -4,7 +4,6 @@
 #include <array>
 
 #include "kernels/ring.h"
-#include "kernels/simd.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
 #include "pyramid/pyramid.h"
@@ -22,7 +21,6 @@ namespace plc {
 // (bound, voxel_length), kOutOfMemory; then `gradient` is empty. The same bits for any executor and
 // any target.
 Status build_gradient(const PyramidLevel& level, const std::array<double, 3>& voxel_length,
-                      double bound, const Executor& executor, SimdTarget simd,
-                      Buffer<Float4>& gradient);
+                      double bound, const Executor& executor, Buffer<Float4>& gradient);
 
 }  // namespace plc

@@ -120,9 +120,8 @@ size_t list_object(const std::vector<float>& row, float iso, bool above,
 // By value, what each level above I_0 shows at the centres of the object's voxels on I_0.
 class ObjectHistograms {
  public:
-  ObjectHistograms(const Pyramid& pyramid, float iso_0, bool above, const Executor& executor,
-                   SimdTarget simd)
-      : base_(level_image(pyramid.levels[0])), iso_(iso_0), above_(above), simd_(simd) {
+  ObjectHistograms(const Pyramid& pyramid, float iso_0, bool above, const Executor& executor)
+      : base_(level_image(pyramid.levels[0])), iso_(iso_0), above_(above), simd_(executor.simd()) {
     for (size_t h = 1; h < pyramid.levels.size(); ++h) {
       cells_.emplace_back(pyramid.levels[0], pyramid.levels[h]);
     }
@@ -205,11 +204,10 @@ class ObjectHistograms {
 }  // namespace
 
 std::vector<double> covering_isos(const Pyramid& pyramid, double iso_0, bool inside_above,
-                                  double bound, const Executor& executor, SimdTarget simd) {
+                                  double bound, const Executor& executor) {
   std::vector<double> isos(pyramid.levels.size(), within(iso_0));
   if (isos.size() < 2) return isos;
-  const ObjectHistograms histograms(pyramid, static_cast<float>(iso_0), inside_above, executor,
-                                    simd);
+  const ObjectHistograms histograms(pyramid, static_cast<float>(iso_0), inside_above, executor);
   for (size_t h = 1; h < isos.size(); ++h) {
     const double least =
         histograms.quantile(h, inside_above ? kUncoveredPart : 1.0 - kUncoveredPart);

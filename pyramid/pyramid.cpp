@@ -72,8 +72,7 @@ size_t voxels_of(const PyramidLevel& level) {
 }
 
 // False when memory ran out.
-bool fill_level(const PyramidLevel& from, const Executor& executor, SimdTarget simd,
-                PyramidLevel& to) {
+bool fill_level(const PyramidLevel& from, const Executor& executor, PyramidLevel& to) {
   std::array<AxisTaps, 3> taps;
   for (size_t axis = 0; axis < 3; ++axis) {
     // floor() makes voxels larger than rho^h, never smaller: U_h is at most one voxel.
@@ -81,7 +80,7 @@ bool fill_level(const PyramidLevel& from, const Executor& executor, SimdTarget s
     taps[axis] = make_axis_taps(from.dims[axis], to.dims[axis], spread);
   }
   to.values.resize_uninitialized(voxels_of(to));
-  return reduce_image(level_image(from), taps, to.dims, executor, simd, to.values.data());
+  return reduce_image(level_image(from), taps, to.dims, executor, to.values.data());
 }
 
 Window window_of(const PyramidSpec& spec) {
@@ -89,7 +88,7 @@ Window window_of(const PyramidSpec& spec) {
 }
 
 void fill_base(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
-               SimdTarget simd, PyramidLevel& base) {
+               PyramidLevel& base) {
   const Window window = window_of(spec);
   base.form = borrowed_form(volume, window, spec.pad_voxels, spec.pad_value);
   if (base.form.type != ImageType::kUnit) {
@@ -97,8 +96,7 @@ void fill_base(const VolumeView& volume, const PyramidSpec& spec, const Executor
     return;
   }
   base.values.resize_uninitialized(voxels_of(base));
-  make_base_image(volume, window, spec.pad_voxels, spec.pad_value, executor, simd,
-                  base.values.data());
+  make_base_image(volume, window, spec.pad_voxels, spec.pad_value, executor, base.values.data());
 }
 
 Status out_of_memory(const PyramidSpec& spec) {
@@ -107,18 +105,18 @@ Status out_of_memory(const PyramidSpec& spec) {
 }
 
 Status build_levels(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
-                    SimdTarget simd, Pyramid& pyramid) {
+                    Pyramid& pyramid) {
   try {
     pyramid.levels.reserve(static_cast<size_t>(spec.levels) + 1);
     PyramidLevel base;
     base.dims = padded_dims(volume.dims, spec.pad_voxels);
     base.voxel = volume.spacing;
     base.unit = *std::min_element(volume.spacing.begin(), volume.spacing.end());
-    fill_base(volume, spec, executor, simd, base);
+    fill_base(volume, spec, executor, base);
     pyramid.levels.push_back(std::move(base));
     for (int h = 0; h < spec.levels; ++h) {
       PyramidLevel next = next_level(pyramid.levels.back(), spec.reduction);
-      if (!fill_level(pyramid.levels.back(), executor, simd, next)) return out_of_memory(spec);
+      if (!fill_level(pyramid.levels.back(), executor, next)) return out_of_memory(spec);
       pyramid.levels.push_back(std::move(next));
     }
   } catch (const std::bad_alloc&) {
@@ -176,14 +174,14 @@ Status check_padded(const std::array<int64_t, 3>& dims, int pad_voxels) {
 }
 
 Status build_pyramid(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
-                     SimdTarget simd, Pyramid& pyramid) {
+                     Pyramid& pyramid) {
   pyramid.levels.clear();
   Status status = check_volume(volume);
   if (status.ok()) status = check_spec(spec);
   if (!status.ok()) return status;
   status = check_padded(volume.dims, spec.pad_voxels);
   if (status.ok()) status = check_depth(padded_dims(volume.dims, spec.pad_voxels), spec);
-  if (status.ok()) status = build_levels(volume, spec, executor, simd, pyramid);
+  if (status.ok()) status = build_levels(volume, spec, executor, pyramid);
   if (!status.ok()) pyramid.levels.clear();
   return status;
 }

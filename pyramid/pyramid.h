@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "kernels/image.h"
-#include "kernels/simd.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
 #include "pyramid/status.h"
@@ -48,7 +47,7 @@ struct VoxelRange {
   double low = 0, high = 0;
   int64_t not_finite = 0;  // number of NaN or infinite voxels
 };
-VoxelRange voxel_range(const VolumeView& volume, const Executor& executor, SimdTarget simd);
+VoxelRange voxel_range(const VolumeView& volume, const Executor& executor);
 
 // The most levels above I_0 whose coarsest image has at least kMinLevelDim voxels on every axis.
 inline constexpr int64_t kMinLevelDim = 4;
@@ -70,7 +69,7 @@ Status check_padded(const std::array<int64_t, 3>& dims, int pad_voxels);
 // padded level of 2^31 voxels or more), kOutOfMemory. The same bits for any executor and any
 // target.
 Status build_pyramid(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
-                     SimdTarget simd, Pyramid& pyramid);
+                     Pyramid& pyramid);
 
 // The part of the object that a coarse level may lose from sight; see covering_isos.
 inline constexpr double kUncoveredPart = 0.05;
@@ -82,6 +81,6 @@ inline constexpr double kUncoveredPart = 0.05;
 // value for all they would be lost there, and a surface that has shrunk past a part does not come
 // back to it. result[0] == iso_0; all lie in (0,1). The same for any executor and target.
 std::vector<double> covering_isos(const Pyramid& pyramid, double iso_0, bool inside_above,
-                                  double bound, const Executor& executor, SimdTarget simd);
+                                  double bound, const Executor& executor);
 
 }  // namespace plc

@@ -116,13 +116,12 @@ std::array<size_t, 3> to_sizes(const std::array<int64_t, 3>& dims) {
 }  // namespace
 
 bool reduce_image(const ImageView& in, const std::array<AxisTaps, 3>& taps,
-                  const std::array<int64_t, 3>& out_dims, const Executor& executor, SimdTarget simd,
-                  float* out) {
+                  const std::array<int64_t, 3>& out_dims, const Executor& executor, float* out) {
   Reduction r{in,
               to_sizes({in.dims[0], in.dims[1], in.dims[2]}),
               {taps[0].view(), taps[1].view(), taps[2].view()},
               to_sizes(out_dims),
-              simd,
+              executor.simd(),
               out,
               0};
   const size_t row_bytes = r.out_dims[0] * static_cast<size_t>(taps[2].taps) * sizeof(float);

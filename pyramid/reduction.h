@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "kernels/image.h"
-#include "kernels/simd.h"
 #include "pyramid/executor.h"
 #include "pyramid/taps.h"
 
@@ -16,7 +15,6 @@ namespace plc {
 // are read as they stand, a few rows at a time. Returns false when a tile's scratch memory could
 // not be had.
 bool reduce_image(const ImageView& in, const std::array<AxisTaps, 3>& taps,
-                  const std::array<int64_t, 3>& out_dims, const Executor& executor, SimdTarget simd,
-                  float* out);
+                  const std::array<int64_t, 3>& out_dims, const Executor& executor, float* out);
 
 }  // namespace plc

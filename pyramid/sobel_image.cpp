@@ -27,7 +27,7 @@ std::array<const float*, 9> rows_around(const float* image, const std::array<int
 }  // namespace
 
 bool sobel_image(const float* image, const std::array<int64_t, 3>& dims,
-                 const std::array<float, 3>& scale, const Executor& executor, SimdTarget simd,
+                 const std::array<float, 3>& scale, const Executor& executor,
                  const std::function<void(const GradientRow&)>& use) {
   const auto width = static_cast<size_t>(dims[0]);
   return run_guarded(executor, static_cast<size_t>(dims[2]), [&](size_t slice) {
@@ -36,8 +36,8 @@ bool sobel_image(const float* image, const std::array<int64_t, 3>& dims,
     scratch.resize_uninitialized(kernels::sobel_scratch(width));
     for (Buffer<float>* row : {&gx, &gy, &gz}) row->resize_uninitialized(width);
     for (int64_t y = 0; y < dims[1]; ++y) {
-      kernels::sobel(simd, rows_around(image, dims, y, z).data(), width, scale, scratch.data(),
-                     gx.data(), gy.data(), gz.data());
+      kernels::sobel(executor.simd(), rows_around(image, dims, y, z).data(), width, scale,
+                     scratch.data(), gx.data(), gy.data(), gz.data());
       use({static_cast<size_t>(z * dims[1] + y) * width, width, gx.data(), gy.data(), gz.data()});
     }
   });

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 
-#include "kernels/simd.h"
 #include "pyramid/executor.h"
 
 namespace plc {
@@ -23,7 +22,7 @@ struct GradientRow {
 // gradient (kernels/sobel.h) times `scale` per axis, borders replicated. `use` must write to
 // places of that row alone. Returns false when memory for a slice's rows could not be had.
 bool sobel_image(const float* image, const std::array<int64_t, 3>& dims,
-                 const std::array<float, 3>& scale, const Executor& executor, SimdTarget simd,
+                 const std::array<float, 3>& scale, const Executor& executor,
                  const std::function<void(const GradientRow&)>& use);
 
 }  // namespace plc

@@ -1,6 +1,5 @@
 // The grey-level window derived from the image: what is mapped to 0 and 1 around the iso-value.
 #pragma once
-#include "kernels/simd.h"
 #include "pyramid/base_image.h"
 #include "pyramid/executor.h"
 #include "pyramid/pyramid.h"

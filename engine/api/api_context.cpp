@@ -176,7 +176,7 @@ int plc_context_threads(const plc_context* context) {
   return context == nullptr ? 0 : context->host->schedule.threads();
 }
 const char* plc_context_simd(const plc_context* context) {
-  return context == nullptr ? "" : plc::simd_target_name(context->host->simd).data();
+  return context == nullptr ? "" : plc::simd_target_name(context->host->schedule.simd()).data();
 }
 plc_status plc_context_memory(const plc_context* context, int64_t* now, int64_t* peak) {
   if (context == nullptr) return PLC_INVALID_ARGUMENT;

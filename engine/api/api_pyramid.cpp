@@ -30,7 +30,7 @@ void choose_isos(const VolumeView& volume, double background, PyramidData& pyram
     std::fill_n(p.level_iso, pyramid.images.levels.size(), NAN);
   } else if (p.level_iso_count == 0) {
     isos = covering_isos(pyramid.images, base_iso(volume, p, p.iso), p.inside_below == 0,
-                         level_iso_bound(p, background), host.schedule, host.simd);
+                         level_iso_bound(p, background), host.schedule);
     for (int h = p.levels; h > 0; --h) {
       p.level_iso[p.levels - h] = denormalised(p, isos[static_cast<size_t>(h)]);
     }
@@ -70,23 +70,21 @@ Status build(const std::shared_ptr<const VolumeData>& source, const plc_paramete
   // Before all its voxels are looked at.
   if (Status s = check_padded(volume.dims, kPadVoxels); !s.ok()) return s;
   if (p.feature == PLC_FEATURE_GRADIENT_NORM) {
-    if (Status s =
-            gradient_norm(volume, p.feature_sigma, host.schedule, host.simd, pyramid.feature);
+    if (Status s = gradient_norm(volume, p.feature_sigma, host.schedule, pyramid.feature);
         !s.ok()) {
       return s;
     }
     volume.type = VoxelType::kF32;
     volume.voxels = pyramid.feature.data();
   }
-  pyramid.range = voxel_range(volume, host.schedule, host.simd);
+  pyramid.range = voxel_range(volume, host.schedule);
   if (Status s = check_range(pyramid.range); !s.ok()) return s;
   double background = 0;
   if (Status s = derive_parameters(volume, pyramid.range, host.schedule, p, background); !s.ok()) {
     return s;
   }
   const double images_start = now();
-  if (Status s = build_pyramid(volume, pyramid_spec(p), host.schedule, host.simd, pyramid.images);
-      !s.ok()) {
+  if (Status s = build_pyramid(volume, pyramid_spec(p), host.schedule, pyramid.images); !s.ok()) {
     return s;
   }
   pyramid.seconds_images = now() - images_start;
@@ -213,8 +211,8 @@ plc_status plc_pyramid_values(plc_context* context, const plc_pyramid* pyramid, 
     const plc::Host& host = *context->host;
     host.schedule.run(static_cast<size_t>(level.dims[2]), [&](size_t z) {
       const auto plane_z = static_cast<int64_t>(z);
-      plc::kernels::image_rows(host.simd, plc::level_image(level), plane_z, 0, level.dims[1],
-                               values + plane_z * plane);
+      plc::kernels::image_rows(host.schedule.simd(), plc::level_image(level), plane_z, 0,
+                               level.dims[1], values + plane_z * plane);
     });
     return {};
   });

@@ -83,8 +83,8 @@ Status Run::prepare(std::shared_ptr<const PyramidData> pyramid, Pyramid images, 
   extras_.attachments = nullptr;
   extras_.pins = nullptr;
   if (Status s = check_cost(images, spec); !s.ok()) return s;
-  recovery_.emplace(std::move(images), std::move(spec), host_->schedule, host_->simd, hooks(),
-                    surface_->mesh, surface_->records);
+  recovery_.emplace(std::move(images), std::move(spec), host_->schedule, hooks(), surface_->mesh,
+                    surface_->records);
   surface_->seconds.struct_size = sizeof surface_->seconds;
   surface_->seconds.preparation = pyramid_->seconds + (now() - start);
   surface_->seconds.images = pyramid_->seconds_images;
@@ -142,7 +142,7 @@ Status Run::build_mask(const plc_image& mask, Lasting lasting, Pyramid& pyramid)
   spec.window_low = 0;
   spec.window_high = 1;
   spec.pad_value = 0;
-  return build_pyramid(volume, spec, host_->schedule, host_->simd, pyramid);
+  return build_pyramid(volume, spec, host_->schedule, pyramid);
 }
 
 RecoveryHooks Run::hooks() {

@@ -28,7 +28,7 @@ namespace plc {
 // What a context and all that is made with it share: the last of them frees it.
 struct Host {
   Host(const Memory::Hooks& hooks, int64_t limit, const Threads& threads, SimdTarget target)
-      : memory(hooks, limit), schedule(threads), simd(target) {}
+      : memory(hooks, limit), schedule(threads, target) {}
   // To whoever listens.
   void log(plc_log_level level, const std::string& line) const {
     if (log_fn != nullptr) log_fn(level, line.c_str(), log_user);
@@ -36,7 +36,6 @@ struct Host {
 
   Memory memory;
   Schedule schedule;
-  SimdTarget simd;
   plc_log_fn log_fn = nullptr;
   void* log_user = nullptr;
 };

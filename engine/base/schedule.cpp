@@ -143,7 +143,7 @@ void Schedule::Arena::leave_team() {
   team_->wait_for_helpers();
 }
 
-Schedule::Schedule(const Threads& threads) : threads_(threads) {
+Schedule::Schedule(const Threads& threads, SimdTarget simd) : Executor(simd), threads_(threads) {
   if (threads.parallel_for != nullptr) return;
   // More than oneTBB has it does not give, and would say so on stderr.
   threads_.count = std::min(threads.count, TbbArena::threads_of_process());

@@ -116,8 +116,9 @@ struct Threads {
 class Schedule final : public Executor {
  public:
   // threads.count >= 0.
-  explicit Schedule(const Threads& threads);
-  explicit Schedule(int threads) : Schedule(Threads{threads}) {}
+  explicit Schedule(const Threads& threads, SimdTarget simd = best_simd_target());
+  explicit Schedule(int threads, SimdTarget simd = best_simd_target())
+      : Schedule(Threads{threads}, simd) {}
   ~Schedule() override;
   // How many threads loops may run on; 0: only the host knows.
   int threads() const;

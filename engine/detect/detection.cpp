@@ -4,12 +4,12 @@
 
 namespace plc {
 
-Detection::Detection(Mesh& mesh, const Executor& executor, SimdTarget simd)
+Detection::Detection(Mesh& mesh, const Executor& executor)
     : mesh_(mesh),
       executor_(executor),
       due_(mesh, executor),
-      hash_(simd),
-      surroundings_(mesh, executor, simd) {}
+      hash_(executor.simd()),
+      surroundings_(mesh, executor) {}
 
 void Detection::list_due() {
   due_.list_due();

@@ -6,7 +6,6 @@
 #include "engine/detect/spatial_hash.h"
 #include "engine/detect/surroundings.h"
 #include "engine/mesh/mesh.h"
-#include "kernels/simd.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
 
@@ -14,7 +13,7 @@ namespace plc {
 
 class Detection {
  public:
-  Detection(Mesh& mesh, const Executor& executor, SimdTarget simd);
+  Detection(Mesh& mesh, const Executor& executor);
 
   // New ids, new level: everything that is known about single vertices is forgotten.
   void restart() { hash_valid_ = false; }

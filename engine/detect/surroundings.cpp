@@ -172,7 +172,7 @@ void Surroundings::search_group(const uint32_t* due, size_t count, Wanted wanted
     const Vec3 p = mesh_.at(due[i]);
     const Vec3 n = near_only ? Vec3{} : sheet_normal(due[i]);
     const uint32_t hits = kernels::near_or_turned(
-        simd_, view,
+        executor_.simd(), view,
         {p.x, p.y, p.z, n.x, n.y, n.z, near * near, far * far, near_only ? kNone : kRiskDot},
         scratch.hits.data());
     if (near_only) {

@@ -7,7 +7,6 @@
 #include "engine/detect/spatial_hash.h"
 #include "engine/mesh/mesh.h"
 #include "engine/mesh/vertex_bytes.h"
-#include "kernels/simd.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
 
@@ -27,8 +26,7 @@ struct VertexPair {
 // fetched once, into streams, and searched for each of them by a kernel.
 class Surroundings {
  public:
-  Surroundings(const Mesh& mesh, const Executor& executor, SimdTarget simd)
-      : mesh_(mesh), executor_(executor), simd_(simd) {}
+  Surroundings(const Mesh& mesh, const Executor& executor) : mesh_(mesh), executor_(executor) {}
 
   // due: ascending. The hash holds every living vertex. Normals are those of mesh.normal; a vertex
   // that the surface folds around has none. risk: the flags of risk.h, known for all vertices;
@@ -82,7 +80,6 @@ class Surroundings {
 
   const Mesh& mesh_;
   const Executor& executor_;
-  SimdTarget simd_;
   const VertexBytes* risk_ = nullptr;  // of this search
   Vector<Task> tasks_;
   Spares<Scratch> scratches_;

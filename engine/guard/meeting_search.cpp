@@ -269,8 +269,8 @@ void MeetingSearch::find_near(uint32_t node, Vector<uint32_t>& near) const {
 
 // Tests the faces in the leaves of one node against those in the same and in later leaves with
 // which they have no vertex in common.
-void MeetingSearch::search_leaves(const Mesh& mesh, uint32_t node, Scratch& scratch,
-                                  Pairs& pairs) const {
+void MeetingSearch::search_leaves(const Mesh& mesh, SimdTarget simd, uint32_t node,
+                                  Scratch& scratch, Pairs& pairs) const {
   const Level &leaves = levels_[0], &nodes = levels_[1];
   find_near(node, scratch.near);
   const size_t room = scratch.near.size() * kernels::kMostPairs;
@@ -280,7 +280,7 @@ void MeetingSearch::search_leaves(const Mesh& mesh, uint32_t node, Scratch& scra
   const auto end = std::min<size_t>((size_t{node} + 1) * kLanes, leaves.boxes.size());
   for (size_t leaf = size_t{node} * kLanes; leaf < end; ++leaf) {
     const size_t count =
-        kernels::face_pairs(simd_, tree, static_cast<uint32_t>(leaf), scratch.near.data(),
+        kernels::face_pairs(simd, tree, static_cast<uint32_t>(leaf), scratch.near.data(),
                             scratch.near.size(), scratch.candidates.data());
     for (size_t i = 0; i < count; ++i) {
       const auto [f, g] = scratch.candidates[i];
@@ -319,7 +319,7 @@ const Vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t slot
       const Spares<Scratch>::Lent scratch = scratches_.lend();
       const size_t begin = (task - vertex_tasks) * kSearchBlock;
       for (size_t node = begin; node < std::min(nodes, begin + kSearchBlock); ++node) {
-        search_leaves(mesh, static_cast<uint32_t>(node), *scratch, pairs);
+        search_leaves(mesh, executor.simd(), static_cast<uint32_t>(node), *scratch, pairs);
       }
     }
   });

@@ -33,8 +33,6 @@ namespace plc {
 // Not thread-safe: one search at a time.
 class MeetingSearch {
  public:
-  explicit MeetingSearch(SimdTarget simd = best_simd_target()) : simd_(simd) {}
-
   // rings and positions of ids below `slots`; deleted vertices (valence 0) are skipped. marked: per
   // id, not 0 where the vertex may have part in a meeting; NULL: all may. before: where the
   // vertices were when no two faces met; NULL: all have moved. Returns the pairs (f, g), f < g, of
@@ -88,10 +86,10 @@ class MeetingSearch {
     Buffer<kernels::CandidatePair> candidates;
   };
   void find_near(uint32_t node, Vector<uint32_t>& near) const;
-  void search_leaves(const Mesh& mesh, uint32_t node, Scratch& scratch, Pairs& pairs) const;
+  void search_leaves(const Mesh& mesh, SimdTarget simd, uint32_t node, Scratch& scratch,
+                     Pairs& pairs) const;
   uint32_t index_of(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) const;
 
-  SimdTarget simd_;
   Spares<Scratch> scratches_;
   Buffer<uint32_t> vertices_;  // ascending
   Buffer<uint8_t> listed_;     // per vertex

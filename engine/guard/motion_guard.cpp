@@ -22,7 +22,7 @@ void MotionGuard::find_folds(const Vector<uint32_t>& blocks) {
     Vector<uint32_t>& found = found_[task];
     found.clear();
     const Blocks part = Blocks::of(blocks.data(), blocks.size(), begin, end);
-    kernels::turned_faces(simd_, mesh_.rings(), mesh_.position.data(), part,
+    kernels::turned_faces(executor_.simd(), mesh_.rings(), mesh_.position.data(), part,
                           {n.x.data(), n.y.data(), n.z.data()}, kRiskDot, folds_.data());
     for (size_t i = 0; i < part.count; ++i) {
       for (uint32_t v = part.begin(i); v < part.begin(i) + kRingLanes; ++v) {

@@ -7,7 +7,6 @@
 #include "engine/guard/meeting_search.h"
 #include "engine/mesh/mesh.h"
 #include "engine/mesh/vertex_bytes.h"
-#include "kernels/simd.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
 
@@ -21,12 +20,8 @@ namespace plc {
 //   risk           1      flags         of risk.h; attached to the mesh
 class MotionGuard {
  public:
-  MotionGuard(Mesh& mesh, const Executor& executor, SimdTarget simd)
-      : mesh_(mesh),
-        executor_(executor),
-        risk_(mesh, kNearRisk, VertexBytes::Reset::kCreated),
-        simd_(simd),
-        search_(simd) {}
+  MotionGuard(Mesh& mesh, const Executor& executor)
+      : mesh_(mesh), executor_(executor), risk_(mesh, kNearRisk, VertexBytes::Reset::kCreated) {}
 
   // blocks: of kRingLanes vertices, with all that have moved and all their neighbours. Finds where
   // the surface folds now, against the normals of the movement's start.
@@ -54,7 +49,6 @@ class MotionGuard {
   Mesh& mesh_;
   const Executor& executor_;
   VertexBytes risk_;
-  SimdTarget simd_;
   Buffer<uint8_t> folds_;
   Vector<Vector<uint32_t>> found_;  // newly folded, by task
   Vector<uint32_t> newly_folded_;

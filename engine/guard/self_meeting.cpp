@@ -7,9 +7,8 @@
 
 namespace plc {
 
-Vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Executor& executor,
-                                              SimdTarget simd) {
-  MeetingSearch search(simd);
+Vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Executor& executor) {
+  MeetingSearch search;
   Vector<uint32_t> faces;
   for (const auto& [f, g] :
        search.find(mesh.rings(), mesh.slots(), mesh.position.data(), nullptr, executor)) {

@@ -4,14 +4,13 @@
 #include <cstdint>
 
 #include "engine/mesh/mesh.h"
-#include "kernels/simd.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
 
 namespace plc {
 
 // Every face of a pair that meets, once or more, in a fixed order; empty for an embedded surface.
-Vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Executor& executor,
-                                              SimdTarget simd = best_simd_target());
+Vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh,
+                                              const Executor& executor = SerialExecutor());
 
 }  // namespace plc

@@ -53,12 +53,8 @@ float stable_time_step(const Model& model, float stiffness) {
   return std::min(model.time_step, static_cast<float>(std::min(longest, damped)));
 }
 
-Dynamics::Dynamics(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model)
-    : mesh_(mesh),
-      schedule_(schedule),
-      simd_(simd),
-      model_(model),
-      time_step_(stable_time_step(model)) {}
+Dynamics::Dynamics(Mesh& mesh, const Schedule& schedule, const Model& model)
+    : mesh_(mesh), schedule_(schedule), model_(model), time_step_(stable_time_step(model)) {}
 
 void Dynamics::resize(const Guide& guide) {
   const size_t n = mesh_.padded(), room = mesh_.room();
@@ -90,7 +86,8 @@ void Dynamics::choose_blocks(const Sleep* sleep) {
                   stage.begin() + begin);
       }
     });
-    kernels::laplacian(simd_, mesh_.rings(), mesh_.position.data(), fallen, laplacian_.data());
+    kernels::laplacian(schedule_.simd(), mesh_.rings(), mesh_.position.data(), fallen,
+                       laplacian_.data());
   }
   movement_.assign(tasks(), {});
 }
@@ -211,15 +208,16 @@ void Dynamics::normals(const Guide& guide) {
   const Float4* position = mesh_.position.data();
   for_tasks([&](size_t, const Blocks& blocks) {
     if (model_.curvature > 0) {
-      kernels::normals_and_laplacian(simd_, mesh_.rings(), position, blocks, n, laplacian_.data());
+      kernels::normals_and_laplacian(schedule_.simd(), mesh_.rings(), position, blocks, n,
+                                     laplacian_.data());
     } else {
-      kernels::normals(simd_, mesh_.rings(), position, blocks, n);
+      kernels::normals(schedule_.simd(), mesh_.rings(), position, blocks, n);
     }
     if (!stretched(guide.metric)) return;
     const kernels::Float3s m = raw(metric_normal_);
     const kernels::Float3s step = raw(metric_step_);
     split_runs(blocks, [&](uint32_t begin, uint32_t end) {
-      kernels::metric_normals(simd_, guide.metric, n, begin, end, m, step);
+      kernels::metric_normals(schedule_.simd(), guide.metric, n, begin, end, m, step);
     });
   });
 }
@@ -234,7 +232,8 @@ Status Dynamics::user_force(int stage, const Guide& guide) {
 
 void Dynamics::laplacians(int stage) {
   for_tasks([this, stage](size_t, const Blocks& blocks) {
-    kernels::laplacian(simd_, mesh_.rings(), stage_position(stage), blocks, laplacian_.data());
+    kernels::laplacian(schedule_.simd(), mesh_.rings(), stage_position(stage), blocks,
+                       laplacian_.data());
   });
 }
 
@@ -242,21 +241,22 @@ void Dynamics::run_stage(int stage, const Guide& guide) {
   const bool fused = only_surface_forces(guide);
   for_tasks([&](size_t, const Blocks& blocks) {
     if (fused) {
-      kernels::guided_stage(simd_, stage, coefficients(), surface_forces(stage, guide),
+      kernels::guided_stage(schedule_.simd(), stage, coefficients(), surface_forces(stage, guide),
                             streams(stage), blocks);
       return;
     }
     split_runs(blocks,
                [&](uint32_t begin, uint32_t end) { gather_forces(stage, guide, begin, end); });
-    kernels::rk4_stage(simd_, stage, coefficients(), streams(stage), raw(std::as_const(force_)),
-                       blocks);
+    kernels::rk4_stage(schedule_.simd(), stage, coefficients(), streams(stage),
+                       raw(std::as_const(force_)), blocks);
   });
 }
 
 void Dynamics::last_stage_and_move(const Guide& guide) {
   for_tasks([&](size_t index, const Blocks& blocks) {
-    movement_[index] = kernels::guided_move(simd_, coefficients(), surface_forces(3, guide),
-                                            streams(3), move_bound(), move_streams(), blocks);
+    movement_[index] =
+        kernels::guided_move(schedule_.simd(), coefficients(), surface_forces(3, guide), streams(3),
+                             move_bound(), move_streams(), blocks);
   });
   end_step();
 }
@@ -269,14 +269,14 @@ const Float4* Dynamics::stage_position(int stage) const {
 void Dynamics::gather_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end) {
   const kernels::Float3s force = raw(force_);
   if (model_.curvature > 0) {
-    kernels::curvature_force(simd_, mesh_.rings(), laplacian_.data(),
+    kernels::curvature_force(schedule_.simd(), mesh_.rings(), laplacian_.data(),
                              mesh_.sizing == nullptr ? model_.curvature : 1, begin, end, force);
     if (mesh_.sizing != nullptr) scale_by_size(begin, end);
   } else {
     for (float* f : {force.x, force.y, force.z}) std::fill(f + begin, f + end, 0.0F);
   }
   if (model_.spring > 0) {
-    kernels::spring_force(simd_, mesh_.rings(), stage_position(stage),
+    kernels::spring_force(schedule_.simd(), mesh_.rings(), stage_position(stage),
                           {model_.spring, rest_length_, guide.metric}, begin, end, force);
   }
   image_forces(stage, guide, begin, end);
@@ -309,17 +309,18 @@ void Dynamics::image_forces(int stage, const Guide& guide, uint32_t begin, uint3
   const auto delta = static_cast<float>(mesh_.delta);
   if (model_.attraction != 0) {
     if (mesh_.sizing != nullptr) {
-      kernels::sized_iso_force(simd_, surface_forces(stage, guide), mesh_.position.data(), begin,
-                               end, force);
+      kernels::sized_iso_force(schedule_.simd(), surface_forces(stage, guide),
+                               mesh_.position.data(), begin, end, force);
     } else {
-      kernels::iso_force(simd_, guide.image, stage_position(stage), raw(image_normal(guide)),
-                         {delta * model_.attraction, guide.iso}, begin, end, force);
+      kernels::iso_force(schedule_.simd(), guide.image, stage_position(stage),
+                         raw(image_normal(guide)), {delta * model_.attraction, guide.iso}, begin,
+                         end, force);
     }
   }
   if (guide.gradient.data != nullptr) {
     const Streams3& normal = stretched(guide.metric) ? metric_normal_ : mesh_.normal;
     const Metric& m = guide.metric;
-    kernels::gradient_force(simd_, guide.gradient, stage_position(stage), raw(normal),
+    kernels::gradient_force(schedule_.simd(), guide.gradient, stage_position(stage), raw(normal),
                             {delta * model_.gradient_normal,
                              delta * model_.gradient_tangent,
                              {1 / m.x, 1 / m.y, 1 / m.z}},
@@ -380,9 +381,9 @@ void Dynamics::measure_rest_length(const Guide& guide) {
   // Of the whole mesh, whatever sleeps.
   Vector<double> part(block_count(mesh_.padded(), kGrain));
   run_blocks(schedule_, mesh_.padded(), kGrain, [&](size_t index, size_t begin, size_t end) {
-    part[index] =
-        kernels::edge_length_sum(simd_, mesh_.rings(), mesh_.position.data(), guide.metric,
-                                 static_cast<uint32_t>(begin), static_cast<uint32_t>(end));
+    part[index] = kernels::edge_length_sum(schedule_.simd(), mesh_.rings(), mesh_.position.data(),
+                                           guide.metric, static_cast<uint32_t>(begin),
+                                           static_cast<uint32_t>(end));
   });
   const double sum = std::accumulate(part.begin(), part.end(), 0.0);
   // Twice the edges of a closed mesh: the sum of the valences.
@@ -395,7 +396,8 @@ void Dynamics::measure_rest_length(const Guide& guide) {
 float Dynamics::longest_move() const {
   Vector<float> part(tasks(), 0.0F);
   for_tasks([&](size_t index, const Blocks& blocks) {
-    part[index] = kernels::max_squared(simd_, raw(std::as_const(mesh_.displacement)), blocks);
+    part[index] =
+        kernels::max_squared(schedule_.simd(), raw(std::as_const(mesh_.displacement)), blocks);
   });
   return part.empty() ? 0.0F : std::sqrt(*std::max_element(part.begin(), part.end()));
 }
@@ -432,7 +434,7 @@ void Dynamics::hold_pinned(const Guide& guide) {
 
 void Dynamics::move() {
   for_tasks([&](size_t index, const Blocks& blocks) {
-    movement_[index] = kernels::move(simd_, move_bound(), raw(mesh_.displacement),
+    movement_[index] = kernels::move(schedule_.simd(), move_bound(), raw(mesh_.displacement),
                                      raw(std::as_const(rate_)), move_streams(), blocks);
   });
   end_step();

@@ -13,7 +13,6 @@
 #include "kernels/blocks.h"
 #include "kernels/guided_stage.h"
 #include "kernels/integrate.h"
-#include "kernels/simd.h"
 #include "pyramid/memory.h"
 
 namespace plc {
@@ -58,7 +57,7 @@ float stable_time_step(const Model& model, float stiffness = 0);
 // 72 bytes per vertex in a run of curvature and image, and 4 per block of 16.
 class Dynamics {
  public:
-  Dynamics(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model);
+  Dynamics(Mesh& mesh, const Schedule& schedule, const Model& model);
 
   // Moves every vertex once; displacement, velocity, normal and path of the mesh are written. Fails
   // where the user's force does; positions, velocities and paths are then as they were.
@@ -127,7 +126,6 @@ class Dynamics {
 
   Mesh& mesh_;
   const Schedule& schedule_;
-  SimdTarget simd_;
   Model model_;
   float time_step_;  // of this step
   float rest_length_ = 0;

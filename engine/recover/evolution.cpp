@@ -17,17 +17,16 @@ namespace {
 
 }  // namespace
 
-Evolution::Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model,
+Evolution::Evolution(Mesh& mesh, const Schedule& schedule, const Model& model,
                      const EvolutionOptions& options)
     : mesh_(mesh),
       schedule_(schedule),
-      simd_(simd),
       slow_vertices_(options.slow_vertices),
       sleep_(mesh, schedule, options.speeds),
-      dynamics_(mesh, schedule, simd, model),
-      detection_(mesh, schedule, simd),
-      guard_(mesh, schedule, simd),
-      resolution_(mesh, schedule, simd, detection_) {}
+      dynamics_(mesh, schedule, model),
+      detection_(mesh, schedule),
+      guard_(mesh, schedule),
+      resolution_(mesh, schedule, detection_) {}
 
 void Evolution::restart() {
   detection_.restart();
@@ -106,7 +105,7 @@ void Evolution::check_all(Seconds& seconds, OperationCounts& counts) {
 }
 
 bool Evolution::embedded() {
-  const auto meeting = meeting_faces(mesh_, schedule_, simd_);
+  const auto meeting = meeting_faces(mesh_, schedule_);
   for (const auto& face : meeting) {
     for (const uint32_t v : face) {
       guard_.suspect(v);

@@ -20,7 +20,7 @@ struct EvolutionOptions {
 
 class Evolution {
  public:
-  Evolution(Mesh& mesh, const Schedule& schedule, SimdTarget simd, const Model& model,
+  Evolution(Mesh& mesh, const Schedule& schedule, const Model& model,
             const EvolutionOptions& options = {});
 
   // The ids or delta of the mesh have changed: at the start of a level.
@@ -64,7 +64,6 @@ class Evolution {
 
   Mesh& mesh_;
   const Schedule& schedule_;
-  SimdTarget simd_;
   bool slow_vertices_;
   Sleep sleep_;
   Dynamics dynamics_;

@@ -28,16 +28,15 @@ EvolutionOptions evolution_options(const RecoverySpec& spec) {
 
 }  // namespace
 
-Recovery::Recovery(Pyramid pyramid, RecoverySpec spec, const Schedule& schedule, SimdTarget simd,
+Recovery::Recovery(Pyramid pyramid, RecoverySpec spec, const Schedule& schedule,
                    RecoveryHooks hooks, Mesh& mesh, std::vector<LevelRecord>& records)
     : pyramid_(std::move(pyramid)),
       spec_(std::move(spec)),
       schedule_(schedule),
-      simd_(simd),
       hooks_(std::move(hooks)),
       mesh_(mesh),
       records_(records),
-      evolution_(mesh, schedule, simd, spec_.model, evolution_options(spec_)),
+      evolution_(mesh, schedule, spec_.model, evolution_options(spec_)),
       levels_(static_cast<int>(pyramid_.levels.size()) - 1),
       level_(levels_) {
   evolution_.set_observer(hooks_.pass);
@@ -102,7 +101,7 @@ Status Recovery::start_level() {
   if (fresh) {
     const LevelImage level{pyramid_, level_,         spec_.pad_voxels,
                            space_,   iso_of(level_), spec_.inside_above};
-    if (Status s = start_surface(spec_.start, level, delta_of(level_), schedule_, simd_, mesh_,
+    if (Status s = start_surface(spec_.start, level, delta_of(level_), schedule_, mesh_,
                                  record().operations);
         !s.ok()) {
       return s;
@@ -166,8 +165,7 @@ Status Recovery::build_gradient_image() {
     guide_.gradient.scale[a] = guide_.image.scale[a];
     guide_.gradient.offset[a] = guide_.image.offset[a];
   }
-  Status s =
-      build_gradient(image_of(level_), voxel, spec_.gradient_bound, schedule_, simd_, gradient_);
+  Status s = build_gradient(image_of(level_), voxel, spec_.gradient_bound, schedule_, gradient_);
   guide_.gradient.data = gradient_.data();
   return s;
 }
@@ -181,7 +179,7 @@ Status Recovery::adapt() {
   const int steps = refinements_between(mesh_.delta, target);
   for (int i = 0; i < steps; ++i) {
     if (uint64_t{mesh_.vertex_count()} * 3 > mesh_.most_vertices) return too_many_vertices();
-    refine(mesh_, schedule_, spec_.renumbering, simd_);
+    refine(mesh_, schedule_, spec_.renumbering);
     ++record().operations.refinement;
   }
   mesh_.delta = target;
@@ -397,8 +395,8 @@ Status Recovery::add_late_bubbles(bool& added) {
   const double start = now();
   const uint32_t before = mesh_.vertex_count();
   LateBubbles late;
-  if (Status s = start_late_bubbles({guide_.image, *iso, spec_.inside_above}, schedule_, simd_,
-                                    mesh_, tried_, late, record().operations);
+  if (Status s = start_late_bubbles({guide_.image, *iso, spec_.inside_above}, schedule_, mesh_,
+                                    tried_, late, record().operations);
       !s.ok()) {
     return s;
   }
@@ -446,9 +444,9 @@ void Recovery::estimate_progress() {
 }
 
 Status pyramidal_recover_shape(Pyramid pyramid, const RecoverySpec& spec, const Schedule& schedule,
-                               SimdTarget simd, const RecoveryHooks& hooks, Mesh& mesh,
+                               const RecoveryHooks& hooks, Mesh& mesh,
                                std::vector<LevelRecord>& records) {
-  Recovery recovery(std::move(pyramid), spec, schedule, simd, hooks, mesh, records);
+  Recovery recovery(std::move(pyramid), spec, schedule, hooks, mesh, records);
   if (Status s = recovery.start(); !s.ok()) return s;
   return recovery.advance(Amount::kAll);
 }

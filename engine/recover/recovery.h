@@ -96,8 +96,8 @@ class Recovery {
   // one entry per level, coarse to fine. Both must outlive it, as must the schedule. The pyramid is
   // given away: a level's values are released when the recovery goes on to the next finer one, so
   // that on I_0, which is borrowed, none are left.
-  Recovery(Pyramid pyramid, RecoverySpec spec, const Schedule& schedule, SimdTarget simd,
-           RecoveryHooks hooks, Mesh& mesh, std::vector<LevelRecord>& records);
+  Recovery(Pyramid pyramid, RecoverySpec spec, const Schedule& schedule, RecoveryHooks hooks,
+           Mesh& mesh, std::vector<LevelRecord>& records);
 
   // Makes the initial surface on the coarsest level that shows the object. A level that holds no
   // surface has 0 vertices in its record; the next finer one then starts anew. Errors: those of
@@ -177,7 +177,6 @@ class Recovery {
   Pyramid pyramid_;
   RecoverySpec spec_;
   const Schedule& schedule_;
-  SimdTarget simd_;
   RecoveryHooks hooks_;
   Mesh& mesh_;
   std::vector<LevelRecord>& records_;
@@ -202,7 +201,7 @@ class Recovery {
 
 // A whole recovery: start, and advance to the end.
 Status pyramidal_recover_shape(Pyramid pyramid, const RecoverySpec& spec, const Schedule& schedule,
-                               SimdTarget simd, const RecoveryHooks& hooks, Mesh& mesh,
+                               const RecoveryHooks& hooks, Mesh& mesh,
                                std::vector<LevelRecord>& records);
 
 }  // namespace plc

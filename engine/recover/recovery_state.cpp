@@ -109,7 +109,7 @@ bool Recovery::restore(StateReader& from) {
   if ((done_ || phase_ == Phase::kVerdict) && !mesh_.in_order()) return false;
   evolution_.restore(from);
   if (!from.ok()) return false;
-  if (!meeting_faces(mesh_, schedule_, simd_).empty()) return false;
+  if (!meeting_faces(mesh_, schedule_).empty()) return false;
   if (phase_ != Phase::kStart && !(build_gradient_image().ok() && build_sizing().ok()))
     return false;
   return spec_.sizes || mesh_.uniform();

@@ -119,8 +119,7 @@ void put_at_rest(Mesh& mesh, const Executor& executor) {
 
 }  // namespace
 
-Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget simd,
-               OperationCounts& counts) {
+Status conform(Mesh& mesh, double delta, const Schedule& schedule, OperationCounts& counts) {
   mesh.delta = delta;
   for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.resize(v);
   const uint32_t given = mesh.slots();
@@ -129,13 +128,13 @@ Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget si
     // The search has boxes around vertices of successive ids. Where these lie anywhere, all boxes
     // overlap, and it would take quadratic time.
     mesh.renumber(morton_order(mesh, schedule), schedule);
-    if (!meeting_faces(mesh, schedule, simd).empty()) {
+    if (!meeting_faces(mesh, schedule).empty()) {
       return {ErrorCode::kInvalidData,
               "the surface has faces too thin to be divided in single precision"};
     }
   }
-  Detection detection(mesh, schedule, simd);
-  Resolution resolution(mesh, schedule, simd, detection);
+  Detection detection(mesh, schedule);
+  Resolution resolution(mesh, schedule, detection);
   // So that the longest edge is just within (2).
   constexpr double kRoom = 1.01;
   double step = longest_edge(mesh) / static_cast<double>(kMaxEdge) * kRoom;
@@ -152,7 +151,7 @@ Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget si
             "nothing is left of the surface at this resolution: it is too small or too thin"};
   }
   assert(broken_invariant(mesh).empty());
-  if (const auto meeting = meeting_faces(mesh, schedule, simd); !meeting.empty()) {
+  if (const auto meeting = meeting_faces(mesh, schedule); !meeting.empty()) {
     const Vec3 p = mesh.at(meeting[0][0]);
     char line[160];
     std::snprintf(line, sizeof line,

@@ -5,7 +5,6 @@
 #include "engine/base/schedule.h"
 #include "engine/base/statistics.h"
 #include "engine/mesh/mesh.h"
-#include "kernels/simd.h"
 #include "pyramid/status.h"
 
 namespace plc {
@@ -37,7 +36,6 @@ inline constexpr int kConformPasses = 20;
 // Errors, with the mesh spoilt: kInvalidData when nothing is left, or faces are so thin that
 // rounding makes them meet when divided; kOutOfMemory for too many vertices; kInternal when the
 // result is not embedded; throws std::bad_alloc.
-Status conform(Mesh& mesh, double delta, const Schedule& schedule, SimdTarget simd,
-               OperationCounts& counts);
+Status conform(Mesh& mesh, double delta, const Schedule& schedule, OperationCounts& counts);
 
 }  // namespace plc

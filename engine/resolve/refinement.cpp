@@ -137,9 +137,9 @@ FaceVertices create_face_vertices(Mesh& mesh, uint32_t old_slots, const Executor
 using Corners = std::array<uint32_t, 3>;
 
 // The faces that meet others, and those that have no area.
-Vector<Corners> wrong_faces(const Mesh& mesh, const Executor& executor, SimdTarget simd) {
+Vector<Corners> wrong_faces(const Mesh& mesh, const Executor& executor) {
   constexpr size_t kBlock = 4096;
-  Vector<Corners> wrong = meeting_faces(mesh, executor, simd);
+  Vector<Corners> wrong = meeting_faces(mesh, executor);
   std::vector<Vector<Corners>> flat(block_count(mesh.slots(), kBlock));
   const auto point = [&](uint32_t v) { return Point3{mesh.at(v).x, mesh.at(v).y, mesh.at(v).z}; };
   run_blocks(executor, mesh.slots(), kBlock, [&](size_t block, size_t begin, size_t end) {
@@ -175,10 +175,9 @@ void give_back_face(Mesh& mesh, const Vector<uint8_t>& of_face, uint32_t c) {
 // the far side of a part of the surface that is nearer than a float can tell, and the face that it
 // was created in is restored.
 // of_face: by id, whether a vertex was created in a face.
-void undo_where_meeting(Mesh& mesh, const Vector<uint8_t>& of_face, const Executor& executor,
-                        SimdTarget simd) {
+void undo_where_meeting(Mesh& mesh, const Vector<uint8_t>& of_face, const Executor& executor) {
   for (;;) {
-    const auto wrong = wrong_faces(mesh, executor, simd);
+    const auto wrong = wrong_faces(mesh, executor);
     if (wrong.empty()) return;
     bool undone = false;
     for (const auto& [a, b, c] : wrong) {
@@ -224,7 +223,7 @@ Vector<uint32_t> living_order(const Mesh& mesh) {
   return order;
 }
 
-void refine(Mesh& mesh, const Executor& executor, bool renumbering, SimdTarget simd) {
+void refine(Mesh& mesh, const Executor& executor, bool renumbering) {
   // Old vertices get the low ids, without gaps, so that ids tell new and old ones apart.
   if (!mesh.in_order())
     mesh.renumber(renumbering ? morton_order(mesh, executor) : living_order(mesh), executor);
@@ -261,7 +260,7 @@ void refine(Mesh& mesh, const Executor& executor, bool renumbering, SimdTarget s
   Vector<uint8_t> of_face(order.size());
   for (size_t i = 0; i < order.size(); ++i) of_face[i] = order[i] >= old_slots ? 1 : 0;
   mesh.renumber(order, executor);
-  undo_where_meeting(mesh, of_face, executor, simd);
+  undo_where_meeting(mesh, of_face, executor);
   if (mesh.vertex_count() != mesh.slots()) {
     mesh.renumber(renumbering ? morton_order(mesh, executor) : living_order(mesh), executor);
   }

@@ -1,7 +1,6 @@
 // Global refinement (3.4): edges shrink to 1 / sqrt 3, three times the vertices.
 #pragma once
 #include "engine/mesh/mesh.h"
-#include "kernels/simd.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
 
@@ -12,8 +11,7 @@ namespace plc {
 // faces share two edges. delta is divided by sqrt 3, ids are renumbered along a Morton curve, every
 // vertex is due for a check.
 // renumbering: false leaves the ids as they come, without gaps; for comparisons.
-void refine(Mesh& mesh, const Executor& executor, bool renumbering = true,
-            SimdTarget simd = best_simd_target());
+void refine(Mesh& mesh, const Executor& executor, bool renumbering = true);
 
 // How many refinements bring delta from `from` nearest to `to`, in the ratio of both; 0 where `to`
 // is not smaller. from, to > 0.

@@ -40,10 +40,9 @@ Vector<Candidate> collect_sorted(const Executor& executor, size_t count, size_t 
 
 }  // namespace
 
-Resolution::Resolution(Mesh& mesh, const Executor& executor, SimdTarget simd, Detection& detection)
+Resolution::Resolution(Mesh& mesh, const Executor& executor, Detection& detection)
     : mesh_(mesh),
       executor_(executor),
-      simd_(simd),
       detection_(detection),
       trials_(mesh, detection.hash(), executor) {}
 
@@ -104,7 +103,7 @@ void Resolution::queue_violated_edges() {
     blocks_.erase(std::unique(blocks_.begin(), blocks_.end()), blocks_.end());
   }
   run_blocks(executor_, blocks_.size(), kTaskBlocks, [&](size_t, size_t begin, size_t end) {
-    kernels::edge_violations(simd_, mesh_.rings(), mesh_.position.data(), delta * delta,
+    kernels::edge_violations(executor_.simd(), mesh_.rings(), mesh_.position.data(), delta * delta,
                              kMaxEdge * kMaxEdge * delta * delta,
                              Blocks::of(blocks_.data(), blocks_.size(), begin, end), flags_.data());
   });

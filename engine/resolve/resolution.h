@@ -8,7 +8,6 @@
 #include "engine/guard/trials.h"
 #include "engine/mesh/mesh.h"
 #include "engine/transform/candidate.h"
-#include "kernels/simd.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
 
@@ -21,7 +20,7 @@ namespace plc {
 class Resolution {
  public:
   // detection: of the same mesh; it outlives this.
-  Resolution(Mesh& mesh, const Executor& executor, SimdTarget simd, Detection& detection);
+  Resolution(Mesh& mesh, const Executor& executor, Detection& detection);
 
   // Everything that is known about single vertices is forgotten: new ids, new level.
   void restart();
@@ -61,7 +60,6 @@ class Resolution {
 
   Mesh& mesh_;
   const Executor& executor_;
-  SimdTarget simd_;
   Detection& detection_;
   TinyComponents tiny_;
   uint32_t iteration_ = 0;

@@ -95,9 +95,8 @@ double volume_of(const Mesh& mesh, const Executor& executor) {
 
 }  // namespace
 
-Status start_late_bubbles(const ImageObject& object, const Schedule& schedule, SimdTarget simd,
-                          Mesh& mesh, VoxelSet& tried, LateBubbles& started,
-                          OperationCounts& counts) {
+Status start_late_bubbles(const ImageObject& object, const Schedule& schedule, Mesh& mesh,
+                          VoxelSet& tried, LateBubbles& started, OperationCounts& counts) {
   const auto delta = static_cast<float>(mesh.delta);
   // A vertex of an iso-surface lies at most 0.9 of a voxel's diagonal from a voxel of the place.
   float diagonal = 0;
@@ -112,11 +111,10 @@ Status start_late_bubbles(const ImageObject& object, const Schedule& schedule, S
     const Cutout cutout(object, places, kind);
     Mesh part;
     part.sizing = mesh.sizing;
-    if (Status s = regular_iso_surface(cutout.object(), cutout.values(), schedule, simd, part);
-        !s.ok()) {
+    if (Status s = regular_iso_surface(cutout.object(), cutout.values(), schedule, part); !s.ok()) {
       return s;
     }
-    Status s = conform(part, mesh.delta, schedule, simd, counts);
+    Status s = conform(part, mesh.delta, schedule, counts);
     if (s.code() == ErrorCode::kInvalidData) continue;  // nothing is left of it
     if (!s.ok()) return s;
     (kind == Missed::kPart ? started.bubbles : started.cavities) += count;

@@ -146,21 +146,20 @@ bool near(const Ellipsoid& a, const Ellipsoid& b, float gap) {
   return squared({way.x / reach.x, way.y / reach.y, way.z / reach.z}) < 1;
 }
 
-Status bubble_around(const Extent& box, double delta, const Schedule& schedule, SimdTarget simd,
-                     Mesh& mesh) {
+Status bubble_around(const Extent& box, double delta, const Schedule& schedule, Mesh& mesh) {
   constexpr int kPower = 4;  // as make_bubble() has it
   const std::array<double, 3> half = bubble_half(box, delta);
   if (!is_stretched(half)) return make_bubble(mesh, box, delta, schedule);
-  return make_stretched_bubble(mesh, box.middle(), half, kPower, delta, schedule, simd);
+  return make_stretched_bubble(mesh, box.middle(), half, kPower, delta, schedule);
 }
 
-Status append_seed(const Ellipsoid& e, const Schedule& schedule, SimdTarget simd, Mesh& mesh) {
+Status append_seed(const Ellipsoid& e, const Schedule& schedule, Mesh& mesh) {
   const std::array<double, 3> half{e.radii.x, e.radii.y, e.radii.z};
   if (!is_stretched(half)) return append_bubble(mesh, e.centre, e.radii, schedule);
   constexpr int kPower = 2;
   Mesh bubble;
   Status s = make_stretched_bubble(bubble, {e.centre.x, e.centre.y, e.centre.z}, half, kPower,
-                                   mesh.delta, schedule, simd);
+                                   mesh.delta, schedule);
   if (!s.ok()) return s;
   if (uint64_t{mesh.slots()} + bubble.slots() > kMaxMeshVertices) return too_many_vertices();
   append_mesh(mesh, bubble, false, [](Vec3 p) { return p; });
@@ -168,7 +167,7 @@ Status append_seed(const Ellipsoid& e, const Schedule& schedule, SimdTarget simd
 }
 
 Status make_seeds(const StartSpec& spec, const LevelImage& level, double delta,
-                  const Schedule& schedule, SimdTarget simd, Mesh& mesh) {
+                  const Schedule& schedule, Mesh& mesh) {
   const auto unit = static_cast<float>(delta);
   mesh.delta = delta;
   const Extent image = image_extent(level);
@@ -194,7 +193,7 @@ Status make_seeds(const StartSpec& spec, const LevelImage& level, double delta,
       }
     }
     made.push_back(e);
-    if (Status s = append_seed(e, schedule, simd, mesh); !s.ok()) return s;
+    if (Status s = append_seed(e, schedule, mesh); !s.ok()) return s;
   }
   return {};
 }
@@ -256,8 +255,7 @@ Status make_iso(const ImageObject& object, double delta, const Executor& executo
 }  // namespace
 
 Status start_surface(const StartSpec& spec, const LevelImage& level, double delta,
-                     const Schedule& schedule, SimdTarget simd, Mesh& mesh,
-                     OperationCounts& counts) {
+                     const Schedule& schedule, Mesh& mesh, OperationCounts& counts) {
   mesh.clear();
   Extent box;
   Status made;
@@ -265,11 +263,11 @@ Status start_surface(const StartSpec& spec, const LevelImage& level, double delt
     case Init::kBubble:
       if (!level.iso) box = image_extent(level);
       if (level.iso && !object_extent(level, schedule, box)) return {};
-      return bubble_around(box, delta, schedule, simd, mesh);
+      return bubble_around(box, delta, schedule, mesh);
     case Init::kBubbles:
       return make_bubbles(mesh, image_extent(level), spec.bubbles, delta, schedule);
     case Init::kSeeds:
-      return make_seeds(spec, level, delta, schedule, simd, mesh);
+      return make_seeds(spec, level, delta, schedule, mesh);
     case Init::kIso:
       assert(level.iso);
       made = make_iso({view_of(level, level.pyramid), *level.iso, level.inside_above}, delta,
@@ -283,7 +281,7 @@ Status start_surface(const StartSpec& spec, const LevelImage& level, double delt
       break;
   }
   if (!made.ok() || mesh.vertex_count() == 0) return made;
-  Status s = conform(mesh, delta, schedule, simd, counts);
+  Status s = conform(mesh, delta, schedule, counts);
   if (s.code() != ErrorCode::kInvalidData || spec.init == Init::kMesh) return s;
   mesh.clear();  // nothing that this level resolves
   return {};

@@ -9,7 +9,6 @@
 #include "engine/base/statistics.h"
 #include "engine/mesh/mesh.h"
 #include "engine/mesh/mesh_space.h"
-#include "kernels/simd.h"
 #include "pyramid/pyramid.h"
 #include "pyramid/status.h"
 
@@ -53,7 +52,6 @@ struct LevelImage {
 // shows no object (kBubble, kIso, kMask). Errors: kInvalidArgument (bubbles or seeds too small, too
 // near each other), kInvalidData (a mesh that is not a closed, oriented, embedded surface).
 Status start_surface(const StartSpec& spec, const LevelImage& level, double delta,
-                     const Schedule& schedule, SimdTarget simd, Mesh& mesh,
-                     OperationCounts& counts);
+                     const Schedule& schedule, Mesh& mesh, OperationCounts& counts);
 
 }  // namespace plc

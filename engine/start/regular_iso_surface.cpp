@@ -122,10 +122,10 @@ class Merging {
 };
 
 // The voxels of faces that meet stay apart. False where there are none.
-bool set_apart(const Mesh& mesh, const Schedule& schedule, SimdTarget simd,
-               const Vector<uint64_t>& voxel, Vector<uint8_t>& apart) {
+bool set_apart(const Mesh& mesh, const Schedule& schedule, const Vector<uint64_t>& voxel,
+               Vector<uint8_t>& apart) {
   Vector<uint64_t> voxels;
-  for (const auto& face : meeting_faces(mesh, schedule, simd)) {
+  for (const auto& face : meeting_faces(mesh, schedule)) {
     for (const uint32_t v : face) voxels.push_back(voxel[v]);
   }
   if (voxels.empty()) return false;
@@ -139,7 +139,7 @@ bool set_apart(const Mesh& mesh, const Schedule& schedule, SimdTarget simd,
 }  // namespace
 
 Status regular_iso_surface(const ImageObject& object, const LatticeValues& values,
-                           const Schedule& schedule, SimdTarget simd, Mesh& mesh) {
+                           const Schedule& schedule, Mesh& mesh) {
   Vector<uint64_t> voxel;
   if (Status s = iso_surface(object, values, schedule, mesh, &voxel); !s.ok()) {
     return s;
@@ -149,7 +149,7 @@ Status regular_iso_surface(const ImageObject& object, const LatticeValues& value
   const Projection projection(object.image, values, object.iso);
   for (int i = 0; i < kTries; ++i) {
     Merging(mesh, voxel, apart).run(projection);
-    if (!set_apart(mesh, schedule, simd, voxel, apart)) {
+    if (!set_apart(mesh, schedule, voxel, apart)) {
       mesh.renumber(morton_order(mesh, schedule), schedule);
       return {};
     }

@@ -9,12 +9,11 @@
 #pragma once
 #include "engine/base/schedule.h"
 #include "engine/start/iso_surface.h"
-#include "kernels/simd.h"
 
 namespace plc {
 
 // As iso_surface(); embedded, with other vertices, and without gaps in the ids.
 Status regular_iso_surface(const ImageObject& object, const LatticeValues& values,
-                           const Schedule& schedule, SimdTarget simd, Mesh& mesh);
+                           const Schedule& schedule, Mesh& mesh);
 
 }  // namespace plc

@@ -33,7 +33,7 @@ bool is_stretched(const std::array<double, 3>& half) {
 
 Status make_stretched_bubble(Mesh& mesh, const std::array<double, 3>& middle,
                              const std::array<double, 3>& half, int power, double delta,
-                             const Schedule& schedule, SimdTarget simd) {
+                             const Schedule& schedule) {
   ImageView lattice;
   std::array<double, 3> step{};    // of the lattice, in halves
   std::array<double, 3> centre{};  // of the bubble, in voxels of the lattice
@@ -59,7 +59,7 @@ Status make_stretched_bubble(Mesh& mesh, const std::array<double, 3>& middle,
                              value};
   if (Status s = iso_surface({lattice, 0, true}, values, schedule, mesh); !s.ok()) return s;
   OperationCounts counts;  // what the making of a start takes is none of a level's
-  Status s = conform(mesh, kCoarser * delta, schedule, simd, counts);
+  Status s = conform(mesh, kCoarser * delta, schedule, counts);
   mesh.delta = delta;
   return s;
 }

@@ -6,7 +6,6 @@
 
 #include "engine/base/schedule.h"
 #include "engine/mesh/mesh.h"
-#include "kernels/simd.h"
 #include "pyramid/status.h"
 
 namespace plc {
@@ -20,6 +19,6 @@ bool is_stretched(const std::array<double, 3>& half);
 // that is thinner than (3) allows is torn. Errors: those of conform().
 Status make_stretched_bubble(Mesh& mesh, const std::array<double, 3>& middle,
                              const std::array<double, 3>& half, int power, double delta,
-                             const Schedule& schedule, SimdTarget simd);
+                             const Schedule& schedule);
 
 }  // namespace plc

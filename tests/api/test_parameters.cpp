@@ -56,7 +56,7 @@ const samples::Volume& ball() {
 
 plc::Status derive(plc_parameters& p, const samples::Volume& volume = ball()) {
   const plc::VolumeView view = volume.view();
-  const plc::VoxelRange range = plc::voxel_range(view, samples::kSerial, plc::best_simd_target());
+  const plc::VoxelRange range = plc::voxel_range(view, samples::kSerial);
   double background = 0;
   return plc::derive_parameters(view, range, samples::kSerial, p, background);
 }

@@ -135,8 +135,8 @@ Range range_seen(const Case& c) {
   if (c.parameters.feature == PLC_FEATURE_NONE) return range_of(c.image.type, c.voxels);
   plc::Buffer<float> norm;
   const plc::Status status =
-      plc::gradient_norm(view_of(c.image), c.parameters.feature_sigma, plc::SerialExecutor(),
-                         plc::SimdTarget::kScalar, norm);
+      plc::gradient_norm(view_of(c.image), c.parameters.feature_sigma,
+                         plc::SerialExecutor(plc::SimdTarget::kScalar), norm);
   if (!status.ok()) return {};
   const auto [low, high] = std::minmax_element(norm.data(), norm.data() + norm.size());
   return {static_cast<double>(*low), static_cast<double>(*high)};

@@ -168,8 +168,8 @@ void run_to(const Run& run, const plc::Pyramid& whole, size_t finest, Outcome& o
     return true;
   };
   std::vector<plc::LevelRecord> records;
-  const plc::Status status = plc::pyramidal_recover_shape(
-      pyramid, spec, schedule, plc::best_simd_target(), {watch, {}}, mesh, records);
+  const plc::Status status =
+      plc::pyramidal_recover_shape(pyramid, spec, schedule, {watch, {}}, mesh, records);
   const auto fail = [&](const std::string& what) {
     if (out.failure.empty()) out.failure = "end of level " + std::to_string(finest) + ": " + what;
   };

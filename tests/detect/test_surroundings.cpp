@@ -78,7 +78,7 @@ TEST_CASE("what is too near and what is at risk is found around all, many and fe
           "[surroundings]") {
   Mesh mesh;
   fill_scene(mesh);
-  Surroundings around(mesh, samples::kSerial, plc::best_simd_target());
+  Surroundings around(mesh, samples::kSerial);
   for (const uint32_t step : {1U, 7U, 400U, 1U}) {  // again: buffers are kept
     const auto due = every(mesh, step);
     const Found found = searched(around, mesh, due), all = expected(mesh, due);
@@ -99,7 +99,7 @@ TEST_CASE("where everything is too near, so many pairs of a vertex are listed an
   Mesh mesh;
   fill_scene(mesh);
   mesh.delta = 10;
-  Surroundings around(mesh, samples::kSerial, plc::best_simd_target());
+  Surroundings around(mesh, samples::kSerial);
   const auto due = every(mesh, 1);
   const size_t pairs = searched(around, mesh, due).too_near.size();
   CHECK(pairs >= mesh.slots());
@@ -113,7 +113,7 @@ TEST_CASE("a search for what is too near finds that alone", "[surroundings]") {
   const auto due = every(mesh, 1);
   plc::SpatialHash hash;
   hash.build(mesh, plc::kHashCell * static_cast<float>(mesh.delta), samples::kSerial);
-  Surroundings around(mesh, samples::kSerial, plc::best_simd_target());
+  Surroundings around(mesh, samples::kSerial);
   around.search_near(due, hash);
   CHECK(around.too_near() == expected(mesh, due).too_near);
   CHECK(around.at_risk().empty());
@@ -125,7 +125,7 @@ TEST_CASE("deleted vertices are near nothing", "[surroundings]") {
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     if (mesh.at(v).z > 1.1F) mesh.destroy(v);  // the second ball
   }
-  Surroundings around(mesh, samples::kSerial, plc::best_simd_target());
+  Surroundings around(mesh, samples::kSerial);
   const auto due = every(mesh, 1);
   const Found found = searched(around, mesh, due);
   for (const VertexPair& pair : found.too_near) {
@@ -139,12 +139,12 @@ TEST_CASE("what is found depends neither on threads nor on the SIMD target", "[s
   Mesh mesh;
   fill_scene(mesh);
   const auto due = every(mesh, 2);
-  Surroundings one(mesh, samples::kSerial, plc::SimdTarget::kScalar);
+  Surroundings one(mesh, plc::SerialExecutor(plc::SimdTarget::kScalar));
   const Found first = searched(one, mesh, due);
   const plc::Vector<uint32_t> in_order = one.at_risk();
-  const fixtures::ThreadExecutor threads(3);
   for (const plc::SimdTarget simd : plc::available_simd_targets()) {
-    Surroundings other(mesh, threads, simd);
+    const fixtures::ThreadExecutor threads(3, simd);
+    Surroundings other(mesh, threads);
     CHECK(searched(other, mesh, due).too_near == first.too_near);
     CHECK(other.at_risk() == in_order);
   }

@@ -230,13 +230,12 @@ TEST_CASE("of pairs that meet those are found of which a face has moved", "[meet
 
 TEST_CASE("every SIMD target finds the same pairs", "[meeting_search]") {
   const samples::Rings r = samples::rings_of(shaken(samples::torus(90, 40, 2, 0.7), 9, 0.09));
-  plc::MeetingSearch scalar(plc::SimdTarget::kScalar);
-  const auto twin =
-      scalar.find(r.view(), r.slots(), r.positions.data(), nullptr, plc::SerialExecutor());
+  plc::MeetingSearch search;
+  const auto twin = search.find(r.view(), r.slots(), r.positions.data(), nullptr,
+                                plc::SerialExecutor(plc::SimdTarget::kScalar));
   CHECK(twin.size() > 100);
   for (const plc::SimdTarget simd : plc::available_simd_targets()) {
-    plc::MeetingSearch search(simd);
-    CHECK(search.find(r.view(), r.slots(), r.positions.data(), nullptr, plc::SerialExecutor()) ==
-          twin);
+    CHECK(search.find(r.view(), r.slots(), r.positions.data(), nullptr,
+                      plc::SerialExecutor(simd)) == twin);
   }
 }

@@ -32,7 +32,7 @@ class Movement {
   }
   // all_due: as if the constraints of every vertex were to be checked; else of none.
   int64_t guard(const plc::Executor& executor = samples::kSerial, bool all_due = true) {
-    plc::MotionGuard guard(mesh_, executor, plc::best_simd_target());
+    plc::MotionGuard guard(mesh_, executor);
     hash_.build(mesh_, plc::kMinApart * static_cast<float>(mesh_.delta), executor);
     plc::Vector<uint32_t> all, due;
     for (uint32_t v = 0; v < mesh_.slots(); ++v) {
@@ -43,7 +43,7 @@ class Movement {
     plc::Vector<uint32_t> blocks(mesh_.padded() / plc::kRingLanes);
     std::iota(blocks.begin(), blocks.end(), 0U);
     guard.find_folds(blocks);
-    plc::Surroundings around(mesh_, executor, plc::best_simd_target());
+    plc::Surroundings around(mesh_, executor);
     around.search(due, hash_, &guard.risk());
     around.search_folded(guard.newly_folded(), hash_, guard.risk());
     guard.assess(due, around.at_risk());
@@ -240,10 +240,10 @@ TEST_CASE("only the risk of vertices that are due is looked at again", "[motion_
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     mesh.normal.set(v, plc::vertex_normal(mesh, v));
   }
-  plc::MotionGuard guard(mesh, samples::kSerial, plc::best_simd_target());
+  plc::MotionGuard guard(mesh, samples::kSerial);
   plc::SpatialHash hash;
   hash.build(mesh, plc::kMinApart * static_cast<float>(kDelta), samples::kSerial);
-  plc::Surroundings around(mesh, samples::kSerial, plc::best_simd_target());
+  plc::Surroundings around(mesh, samples::kSerial);
   around.search({3, 50}, hash);
   guard.assess({3, 50}, around.at_risk());
   for (uint32_t v = 0; v < mesh.slots(); ++v) {

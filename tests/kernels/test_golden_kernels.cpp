@@ -21,7 +21,7 @@ uint64_t pyramid(SimdTarget simd) {
   spec.pad_voxels = 2;
   plc::Pyramid pyramid;
   REQUIRE(plc::build_pyramid({VoxelType::kF32, voxels.data(), {41, 37, 29}, {1, 0.9, 1.7}}, spec,
-                             plc::SerialExecutor(), simd, pyramid)
+                             plc::SerialExecutor(simd), pyramid)
               .ok());
   Fnv hash;
   for (const plc::PyramidLevel& level : pyramid.levels) hash.add_all(samples::values_of(level));

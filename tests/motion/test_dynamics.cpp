@@ -66,7 +66,7 @@ void check_step(const Model& model) {
   const auto bound = static_cast<double>(model.max_move);
   reference.clamp(bound, bound / dt);
   const plc::Schedule schedule(1);
-  plc::Dynamics dynamics(mesh, schedule, plc::best_simd_target(), model);
+  plc::Dynamics dynamics(mesh, schedule, model);
   step(mesh, dynamics, image);
   CAPTURE(model.curvature, model.spring, static_cast<int>(model.rest_length), model.mass);
   CHECK(difference(mesh.displacement, reference.displacement) < 3e-6);
@@ -96,7 +96,7 @@ void check_guided(const Model& model, const Gradient* gradient, const plc::Metri
   const double bound = static_cast<double>(model.max_move) * delta;
   reference.clamp(bound, bound / dt);
   const plc::Schedule schedule(1);
-  plc::Dynamics dynamics(mesh, schedule, plc::best_simd_target(), model);
+  plc::Dynamics dynamics(mesh, schedule, model);
   plc::Guide guide;
   if (model.attraction != 0) guide.image = image.view();
   guide.iso = kIso;
@@ -199,8 +199,8 @@ TEST_CASE("the same surface moves alike in millimetres and in voxels under a met
   Model model = gradient_model(0.2F, 0.1F);
   model.rest_length = RestLength::kMean;
   const plc::Schedule schedule(1);
-  plc::Dynamics in_voxels(voxels, schedule, plc::best_simd_target(), model);
-  plc::Dynamics in_millimetres(millimetres, schedule, plc::best_simd_target(), model);
+  plc::Dynamics in_voxels(voxels, schedule, model);
+  plc::Dynamics in_millimetres(millimetres, schedule, model);
   plc::Guide guide;
   guide.image = image.view();
   guide.iso = kIso;
@@ -238,7 +238,7 @@ TEST_CASE("delta scales the image force and the rest length", "[dynamics]") {
   reference.step(dt);
   reference.clamp(0.6, 0.6 / dt);
   const plc::Schedule schedule(1);
-  plc::Dynamics dynamics(mesh, schedule, plc::best_simd_target(), model);
+  plc::Dynamics dynamics(mesh, schedule, model);
   step(mesh, dynamics, image);
   CHECK(difference(mesh.displacement, reference.displacement) < 3e-6);
   CHECK(dynamics.energy() == Approx(reference.energy(dt)).epsilon(1e-4));
@@ -257,7 +257,7 @@ TEST_CASE("the first bound holds every vertex to the longest movement and its sp
   REQUIRE(reference.longest() > 0.05);
   reference.clamp(0.016, 0.016 / dt);
   const plc::Schedule schedule(1);
-  plc::Dynamics dynamics(mesh, schedule, plc::best_simd_target(), model);
+  plc::Dynamics dynamics(mesh, schedule, model);
   step(mesh, dynamics, image);
   CHECK(difference(mesh.displacement, reference.displacement) < 3e-6);
   CHECK(difference(mesh.velocity, reference.velocity) < 6e-6);
@@ -276,7 +276,7 @@ TEST_CASE("the second bound shortens the time step for all", "[dynamics]") {
   fill(mesh, 1, false);
   // From rest the displacement is about quadratic in the time step.
   const plc::Schedule schedule(1);
-  plc::Dynamics dynamics(mesh, schedule, plc::best_simd_target(), model);
+  plc::Dynamics dynamics(mesh, schedule, model);
   Mesh start;
   fill(start, 1, false);
   step(mesh, dynamics, image);
@@ -307,7 +307,7 @@ TEST_CASE("a scaled time step is that of one step only", "[dynamics]") {
   Mesh mesh;
   fill(mesh, 1);
   const plc::Schedule schedule(1);
-  plc::Dynamics dynamics(mesh, schedule, plc::best_simd_target(), model);
+  plc::Dynamics dynamics(mesh, schedule, model);
   step(mesh, dynamics, image);
   // Now at rest and with hardly a force: the next step is the model's own.
   for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.velocity.set(v, {1e-4F, 0, 0});
@@ -315,7 +315,7 @@ TEST_CASE("a scaled time step is that of one step only", "[dynamics]") {
   weak.attraction = -1e-6F;
   weak.curvature = 0;
   weak.damping = 0;
-  plc::Dynamics calm(mesh, schedule, plc::best_simd_target(), weak);
+  plc::Dynamics calm(mesh, schedule, weak);
   step(mesh, calm, image);
   CHECK(mesh.displacement.x[3] == Approx(1e-4).epsilon(1e-2));
 }
@@ -331,7 +331,7 @@ TEST_CASE("a step moves the vertices, lengthens their paths and remembers where 
     mesh.path[v] = 0.25F;
   }
   const plc::Schedule schedule(1);
-  plc::Dynamics dynamics(mesh, schedule, plc::best_simd_target(), Model());
+  plc::Dynamics dynamics(mesh, schedule, Model());
   step(mesh, dynamics, image);
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     const plc::Vec3 d = mesh.displacement.at(v);
@@ -352,8 +352,8 @@ TEST_CASE("deleted vertices and padding neither move nor count", "[dynamics]") {
   const plc::Schedule schedule(1);
   Model model;
   model.spring = 0.1F;
-  plc::Dynamics first(both, schedule, plc::best_simd_target(), model);
-  plc::Dynamics second(alone, schedule, plc::best_simd_target(), model);
+  plc::Dynamics first(both, schedule, model);
+  plc::Dynamics second(alone, schedule, model);
   for (int i = 0; i < 3; ++i) {
     step(both, first, image);
     step(alone, second, image);
@@ -408,7 +408,7 @@ TEST_CASE("stiff models stay bounded for hundreds of steps", "[dynamics]") {
     Mesh mesh;
     fill(mesh, 1, false);
     const plc::Schedule schedule(1);
-    plc::Dynamics dynamics(mesh, schedule, plc::best_simd_target(), model);
+    plc::Dynamics dynamics(mesh, schedule, model);
     for (int i = 0; i < 300; ++i) step(mesh, dynamics, image);
     CAPTURE(curvature, spring, attraction);
     CHECK(dynamics.energy() < 1e-3);
@@ -433,7 +433,7 @@ TEST_CASE("noise that makes an adaptive mesh stiff lowers its time step", "[dyna
   Mesh mesh;
   fill(mesh, 1, false);
   mesh.sizing = &sizing;
-  plc::Dynamics dynamics(mesh, schedule, plc::best_simd_target(), model);
+  plc::Dynamics dynamics(mesh, schedule, model);
   for (int i = 0; i < 300; ++i) step(mesh, dynamics, clean);
   CHECK(dynamics.energy() < 1e-3);
   for (uint32_t v = 0; v < mesh.slots(); ++v) CHECK(plc::length(mesh.at(v)) < 20);
@@ -446,7 +446,7 @@ TEST_CASE("a sphere in the potential of a ball settles on the iso-surface", "[dy
   Mesh mesh;
   samples::fill_mesh(mesh, samples::moved(samples::sphere(3), 0, 0, 0, 8.5), 1);
   const plc::Schedule schedule(1);
-  plc::Dynamics dynamics(mesh, schedule, plc::best_simd_target(), model);
+  plc::Dynamics dynamics(mesh, schedule, model);
   for (int i = 0; i < 150; ++i) step(mesh, dynamics, image);
   CHECK(dynamics.energy() < 1e-7);
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
@@ -477,8 +477,8 @@ TEST_CASE("a step has the same bits on every thread count and SIMD target", "[dy
         Mesh mesh;
         samples::fill_mesh(mesh, samples::moved(samples::sphere(5), 0, 0, 0, 8), 0.3);
         REQUIRE(mesh.padded() > 4 * plc::kGrain);
-        const plc::Schedule schedule(threads);
-        plc::Dynamics dynamics(mesh, schedule, simd, model);
+        const plc::Schedule schedule(threads, simd);
+        plc::Dynamics dynamics(mesh, schedule, model);
         for (int i = 0; i < 5; ++i) step(mesh, dynamics, image);
         for (int i = 0; i < 3; ++i) REQUIRE(dynamics.step(guided, seconds).ok());
         std::vector<float> result{static_cast<float>(dynamics.energy())};

@@ -200,9 +200,7 @@ TEST_CASE("a run with sleepers ends where one without ends, within what epsilon 
     const plc::Pyramid pyramid = samples::pyramid_of(run, schedule);
     Mesh mesh;
     std::vector<plc::LevelRecord> records;
-    REQUIRE(plc::pyramidal_recover_shape(pyramid, run.recovery, schedule, plc::best_simd_target(),
-                                         {}, mesh, records)
-                .ok());
+    REQUIRE(plc::pyramidal_recover_shape(pyramid, run.recovery, schedule, {}, mesh, records).ok());
     for (const auto& record : records) CHECK(record.converged);
     CHECK(samples::meeting_count(mesh) == 0);
     volumes.push_back(samples::volume(mesh));

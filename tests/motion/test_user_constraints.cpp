@@ -111,7 +111,7 @@ plc::Model shrinking() {
 // Threads do not matter: the meshes are small.
 plc::Status step(Mesh& mesh, const plc::Model& model, const UserConstraints& user, int count = 1) {
   const plc::Schedule schedule(1);
-  plc::Dynamics dynamics(mesh, schedule, plc::best_simd_target(), model);
+  plc::Dynamics dynamics(mesh, schedule, model);
   plc::Guide guide;
   guide.user = &user;
   for (int i = 0; i < count; ++i) {

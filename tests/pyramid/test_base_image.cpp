@@ -22,15 +22,15 @@ TEST_CASE("the base image is the volume in a border of the pad value", "[pyramid
   std::vector<int16_t> voxels(static_cast<size_t>(m * n * p));
   for (size_t i = 0; i < voxels.size(); ++i) voxels[i] = static_cast<int16_t>(10 * i);
   const VolumeView volume{VoxelType::kI16, voxels.data(), {m, n, p}, {1, 1, 1}};
-  const plc::SerialExecutor serial;
-  const ThreadExecutor threads(4);
   for (const SimdTarget simd : plc::available_simd_targets()) {
+    const plc::SerialExecutor serial(simd);
+    const ThreadExecutor threads(4, simd);
     for (const int64_t pad : {0, 1, 3}) {
       const int64_t rows = n + 2 * pad, columns = m + 2 * pad, planes = p + 2 * pad;
       std::vector<float> got(static_cast<size_t>(rows * columns * planes), kUntouched);
       std::vector<float> threaded = got;
-      plc::make_base_image(volume, {100.0, 500.0}, pad, 200.0, serial, simd, got.data());
-      plc::make_base_image(volume, {100.0, 500.0}, pad, 200.0, threads, simd, threaded.data());
+      plc::make_base_image(volume, {100.0, 500.0}, pad, 200.0, serial, got.data());
+      plc::make_base_image(volume, {100.0, 500.0}, pad, 200.0, threads, threaded.data());
       REQUIRE(first_difference(got, threaded) == -1);
       for (int64_t z = 0; z < planes; ++z) {
         for (int64_t y = 0; y < rows; ++y) {
@@ -59,11 +59,11 @@ TEST_CASE("a voxel's value is itself on I_0, copied or borrowed, in every type",
   const plc::VoxelForm form = plc::borrowed_form(volume, window, 0, 0);
   REQUIRE(form.type == plc::ImageType::kI16);
   REQUIRE(plc::borrowed_form(wide, window, 0, 0).type == plc::ImageType::kUnit);
-  const plc::SerialExecutor serial;
   for (const SimdTarget simd : plc::available_simd_targets()) {
+    const plc::SerialExecutor serial(simd);
     std::vector<float> copy(voxels.size()), other(voxels.size());
-    plc::make_base_image(volume, window, 0, 0, serial, simd, copy.data());
-    plc::make_base_image(wide, window, 0, 0, serial, simd, other.data());
+    plc::make_base_image(volume, window, 0, 0, serial, copy.data());
+    plc::make_base_image(wide, window, 0, 0, serial, other.data());
     REQUIRE(first_difference(copy, other) == -1);
     for (size_t i = 0; i < voxels.size(); ++i) {
       const float value = plc::voxel_value(form, voxels[i]);
@@ -82,12 +82,12 @@ TEST_CASE("the range of a volume of several parts is that of all its finite voxe
   voxels[3] = 2.5F;
   voxels[static_cast<size_t>(3 * part - 1)] = 11.0F;
   const VolumeView volume{VoxelType::kF32, voxels.data(), {part, 3, 1}, {1, 1, 1}};
-  const plc::SerialExecutor serial;
-  const ThreadExecutor threads(3);
   for (const SimdTarget simd : plc::available_simd_targets()) {
+    const plc::SerialExecutor serial(simd);
+    const ThreadExecutor threads(3, simd);
     for (const plc::Executor* executor : {static_cast<const plc::Executor*>(&serial),
                                           static_cast<const plc::Executor*>(&threads)}) {
-      const plc::VoxelRange range = plc::voxel_range(volume, *executor, simd);
+      const plc::VoxelRange range = plc::voxel_range(volume, *executor);
       REQUIRE(range.low == 2.5);
       REQUIRE(range.high == 11.0);
       REQUIRE(range.not_finite == part);

@@ -23,10 +23,10 @@ using Vector = std::array<double, 3>;
 
 const plc::SerialExecutor kSerial;
 
-std::vector<float> must_build(const VolumeView& volume, double sigma, const plc::Executor& executor,
-                              SimdTarget simd) {
+std::vector<float> must_build(const VolumeView& volume, double sigma,
+                              const plc::Executor& executor) {
   Buffer<float> norm;
-  const Status status = plc::gradient_norm(volume, sigma, executor, simd, norm);
+  const Status status = plc::gradient_norm(volume, sigma, executor, norm);
   CAPTURE(status.message());
   REQUIRE(status.ok());
   REQUIRE(norm.size() == static_cast<size_t>(volume.dims[0] * volume.dims[1] * volume.dims[2]));
@@ -112,7 +112,7 @@ void require_definition(VoxelType type, const Dims& dims, double low, double hig
     const Reference expected = sobel_norm(blurred(image, spacing, sigma), spacing);
     for (const SimdTarget simd : plc::available_simd_targets()) {
       const std::vector<float> got =
-          must_build({type, voxels.data(), dims, spacing}, sigma, kSerial, simd);
+          must_build({type, voxels.data(), dims, spacing}, sigma, plc::SerialExecutor(simd));
       for (size_t i = 0; i < got.size(); ++i) {
         CAPTURE(plc::simd_target_name(simd), sigma, i, static_cast<int>(type));
         REQUIRE(double{got[i]} == Approx(expected.values[i]).margin(1e-6 * (high - low)));
@@ -123,7 +123,7 @@ void require_definition(VoxelType type, const Dims& dims, double low, double hig
 
 Status norm_status(const VolumeView& volume, double sigma) {
   Buffer<float> norm(7);  // of an earlier use
-  Status status = plc::gradient_norm(volume, sigma, kSerial, SimdTarget::kScalar, norm);
+  Status status = plc::gradient_norm(volume, sigma, plc::SerialExecutor(SimdTarget::kScalar), norm);
   if (!status.ok()) REQUIRE(norm.empty());
   return status;
 }
@@ -158,8 +158,8 @@ TEST_CASE("contrast survives a value that is large against it", "[pyramid]") {
   const Dims dims{8, 4, 4};
   std::vector<int32_t> voxels(8 * 16);
   for (size_t i = 0; i < voxels.size(); ++i) voxels[i] = 1000000000 + static_cast<int32_t>(i % 8);
-  const std::vector<float> got = must_build({VoxelType::kI32, voxels.data(), dims, {0.5, 1, 1}}, 0,
-                                            kSerial, plc::best_simd_target());
+  const std::vector<float> got =
+      must_build({VoxelType::kI32, voxels.data(), dims, {0.5, 1, 1}}, 0, kSerial);
   for (size_t i = 0; i < got.size(); ++i) {
     REQUIRE(got[i] == Approx(i % 8 == 0 || i % 8 == 7 ? 1.0 : 2.0).epsilon(1e-6));
   }
@@ -170,8 +170,8 @@ TEST_CASE("the norm at a smoothed step is the Gaussian's peak, whatever the voxe
   const Dims dims{5, 4, 48};
   std::vector<int16_t> voxels(5 * 4 * 48, 50);
   std::fill_n(voxels.begin(), 5 * 4 * 24, int16_t{-50});
-  const std::vector<float> got = must_build({VoxelType::kI16, voxels.data(), dims, {2, 3, 0.5}},
-                                            2.0, kSerial, plc::best_simd_target());
+  const std::vector<float> got =
+      must_build({VoxelType::kI16, voxels.data(), dims, {2, 3, 0.5}}, 2.0, kSerial);
   const double peak = 100 / (2.0 * std::sqrt(2 * 3.141592653589793));
   for (size_t i = 0; i < got.size(); ++i) {
     const size_t plane = i / 20;
@@ -190,11 +190,12 @@ TEST_CASE("the feature image has the same bits for every target and any number o
   voxels[501] = std::numeric_limits<float>::infinity();
   const VolumeView volume{VoxelType::kF32, voxels.data(), dims, {0.8, 1, 1.5}};
   for (const double sigma : {0.0, 1.3}) {
-    const std::vector<float> expected = must_build(volume, sigma, kSerial, SimdTarget::kScalar);
+    const std::vector<float> expected =
+        must_build(volume, sigma, plc::SerialExecutor(SimdTarget::kScalar));
     for (const SimdTarget simd : plc::available_simd_targets()) {
       for (const unsigned threads : {1U, 2U, 3U}) {
         CAPTURE(plc::simd_target_name(simd), threads, sigma);
-        const std::vector<float> got = must_build(volume, sigma, ThreadExecutor(threads), simd);
+        const std::vector<float> got = must_build(volume, sigma, ThreadExecutor(threads, simd));
         REQUIRE(first_difference(got, expected) == -1);
       }
     }
@@ -210,8 +211,7 @@ TEST_CASE("voxels that are not finite count as the nearest that is", "[pyramid]"
   voxels[50] = 1.0F, wild[50] = -std::numeric_limits<float>::infinity();
   voxels[70] = 4.0F, wild[70] = std::numeric_limits<float>::infinity();
   const auto norm = [&](const std::vector<float>& of) {
-    return must_build({VoxelType::kF32, of.data(), dims, {1, 1, 1}}, 0.6, kSerial,
-                      plc::best_simd_target());
+    return must_build({VoxelType::kF32, of.data(), dims, {1, 1, 1}}, 0.6, kSerial);
   };
   REQUIRE(first_difference(norm(wild), norm(voxels)) == -1);
 }
@@ -220,8 +220,8 @@ TEST_CASE("an image of one value has no contours", "[pyramid]") {
   std::vector<float> voxels(27, -7.25F);
   for (const bool infinite : {false, true}) {
     if (infinite) voxels.assign(27, std::numeric_limits<float>::infinity());
-    for (const float v : must_build({VoxelType::kF32, voxels.data(), {3, 3, 3}, {1, 1, 1}}, 0.5,
-                                    kSerial, plc::best_simd_target())) {
+    for (const float v :
+         must_build({VoxelType::kF32, voxels.data(), {3, 3, 3}, {1, 1, 1}}, 0.5, kSerial)) {
       REQUIRE(v == 0.0F);
     }
   }

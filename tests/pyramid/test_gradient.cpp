@@ -54,9 +54,9 @@ PyramidLevel sampled_level(const Dims& dims, const Value& value) {
 }
 
 std::vector<Float4> must_build(const PyramidLevel& level, const Vector& voxel_length, double bound,
-                               const plc::Executor& executor, SimdTarget simd) {
+                               const plc::Executor& executor) {
   Buffer<Float4> gradient;
-  const Status status = plc::build_gradient(level, voxel_length, bound, executor, simd, gradient);
+  const Status status = plc::build_gradient(level, voxel_length, bound, executor, gradient);
   CAPTURE(status.message());
   REQUIRE(status.ok());
   REQUIRE(gradient.size() == level.values.size());
@@ -93,7 +93,8 @@ Vector expected_gradient(const PyramidLevel& level, const Vector& voxel_length, 
 void require_definition(const Dims& dims, const Vector& voxel_length, double bound) {
   const PyramidLevel level = random_level(dims, 11);
   for (const SimdTarget simd : plc::available_simd_targets()) {
-    const std::vector<Float4> got = must_build(level, voxel_length, bound, kSerial, simd);
+    const std::vector<Float4> got =
+        must_build(level, voxel_length, bound, plc::SerialExecutor(simd));
     size_t i = 0;
     for (int64_t z = 0; z < dims[2]; ++z) {
       for (int64_t y = 0; y < dims[1]; ++y) {
@@ -114,8 +115,8 @@ void require_definition(const Dims& dims, const Vector& voxel_length, double bou
 Status build_status(const Vector& voxel_length, double bound) {
   const PyramidLevel level = random_level({3, 3, 3}, 1);
   Buffer<Float4> gradient(5);  // of an earlier use
-  Status status =
-      plc::build_gradient(level, voxel_length, bound, kSerial, SimdTarget::kScalar, gradient);
+  Status status = plc::build_gradient(level, voxel_length, bound,
+                                      plc::SerialExecutor(SimdTarget::kScalar), gradient);
   if (!status.ok()) REQUIRE(gradient.empty());
   return status;
 }
@@ -136,7 +137,8 @@ TEST_CASE("the gradient of a linear ramp is its slope per unit", "[pyramid]") {
   const PyramidLevel level = sampled_level(
       {11, 9, 7}, [](double x, double y, double z) { return 0.5 + x / 64 - y / 32 + z / 16; });
   for (const SimdTarget simd : plc::available_simd_targets()) {
-    const std::vector<Float4> got = must_build(level, {1, 2, 4}, 1.0 / 16, kSerial, simd);
+    const std::vector<Float4> got =
+        must_build(level, {1, 2, 4}, 1.0 / 16, plc::SerialExecutor(simd));
     for (size_t z = 1; z < 6; ++z) {
       for (size_t y = 1; y < 8; ++y) {
         for (size_t x = 1; x < 10; ++x) {
@@ -154,7 +156,7 @@ TEST_CASE("the gradient of a linear ramp is its slope per unit", "[pyramid]") {
 TEST_CASE("a steep ramp has length one in its own direction", "[pyramid]") {
   const PyramidLevel level =
       sampled_level({5, 5, 5}, [](double x, double y, double) { return (3 * x + 4 * y) / 28; });
-  const Float4 g = must_build(level, {1, 1, 1}, 0.01, kSerial, plc::best_simd_target())[62];
+  const Float4 g = must_build(level, {1, 1, 1}, 0.01, kSerial)[62];
   REQUIRE(g.x == Approx(0.6F));
   REQUIRE(g.y == Approx(0.8F));
   REQUIRE(g.z == Approx(0.0F).margin(1e-6));
@@ -164,12 +166,12 @@ TEST_CASE("the gradient has the same bits for every target and any number of thr
           "[pyramid]") {
   const PyramidLevel level = random_level({45, 31, 29}, 3);
   const std::vector<float> expected =
-      flatten(must_build(level, {1, 1.1, 2.3}, 0.2, kSerial, SimdTarget::kScalar));
+      flatten(must_build(level, {1, 1.1, 2.3}, 0.2, plc::SerialExecutor(SimdTarget::kScalar)));
   for (const SimdTarget simd : plc::available_simd_targets()) {
     for (const unsigned threads : {1U, 2U, 3U}) {
       CAPTURE(plc::simd_target_name(simd), threads);
       const std::vector<Float4> got =
-          must_build(level, {1, 1.1, 2.3}, 0.2, ThreadExecutor(threads), simd);
+          must_build(level, {1, 1.1, 2.3}, 0.2, ThreadExecutor(threads, simd));
       REQUIRE(first_difference(flatten(got), expected) == -1);
     }
   }
@@ -181,8 +183,7 @@ TEST_CASE("the gradient force draws vertices to the ridge of a shell from both s
   const PyramidLevel level = sampled_level({41, 41, 41}, [](double x, double y, double z) {
     return std::max(0.0, 1 - std::abs(samples::norm(x - 20, y - 20, z - 20) - 12) / 6);
   });
-  const std::vector<Float4> gradient =
-      must_build(level, {1, 1, 1}, 0.5, kSerial, plc::best_simd_target());
+  const std::vector<Float4> gradient = must_build(level, {1, 1, 1}, 0.5, kSerial);
   plc::GradientView view{gradient.data(), {41, 41, 41}, {1, 1, 1}, {0, 0, 0}};
   const uint32_t count = 160;
   std::vector<float> n[3], f[3];
@@ -231,8 +232,7 @@ TEST_CASE("a tiny or huge bound leaves no vector that is not finite", "[pyramid]
   for (size_t i = 0; i < 20; ++i) level.values[i] = 0.5F;
   for (const double bound : {1e-300, 1e-30, 1e30, 1e300}) {
     for (const double length : {1e-300, 1.0, 1e300}) {
-      const std::vector<Float4> got =
-          must_build(level, {1, length, 1}, bound, kSerial, plc::best_simd_target());
+      const std::vector<Float4> got = must_build(level, {1, length, 1}, bound, kSerial);
       for (const float v : flatten(got)) REQUIRE(std::abs(v) < 1.000001F);
     }
   }
@@ -246,7 +246,7 @@ TEST_CASE("a gradient beyond the memory is refused, not thrown", "[pyramid]") {
   Buffer<Float4> gradient;
   const MemoryLimit limit(size_t{64} << 20);  // it takes 256 MB
   const Status status =
-      plc::build_gradient(level, {1, 1, 1}, 1, kSerial, SimdTarget::kScalar, gradient);
+      plc::build_gradient(level, {1, 1, 1}, 1, plc::SerialExecutor(SimdTarget::kScalar), gradient);
   REQUIRE(status.code() == ErrorCode::kOutOfMemory);
   REQUIRE(status.message() == "gradient of 256 x 256 x 256 voxels: out of memory");
   REQUIRE(gradient.empty());

@@ -40,14 +40,13 @@ Built build(int64_t size, int levels, const Value& value) {
   spec.levels = levels;
   spec.pad_voxels = 0;
   REQUIRE(plc::build_pyramid({VoxelType::kF32, voxels.data(), {size, size, size}, {1, 1, 1.5}},
-                             spec, kSerial, plc::best_simd_target(), built.pyramid)
+                             spec, kSerial, built.pyramid)
               .ok());
   return built;
 }
 
 std::vector<double> isos_of(const Pyramid& pyramid, double iso_0, bool above) {
-  return plc::covering_isos(pyramid, iso_0, above, above ? 0.0 : 1.0, kSerial,
-                            plc::best_simd_target());
+  return plc::covering_isos(pyramid, iso_0, above, above ? 0.0 : 1.0, kSerial);
 }
 
 // 1 inside the radius, 0 outside, linear over one voxel between; off the symmetries of the grid.
@@ -180,11 +179,11 @@ TEST_CASE("iso values do not depend on the target or the threads", "[pyramid]") 
   const Built pyramid = build(44, 2, [](double x, double y, double z) {
     return ball(x, y, z, 20, 9) * (0.6 + 0.4 * std::sin(x * y + z));
   });
-  const std::vector<double> expected =
-      plc::covering_isos(pyramid.pyramid, 0.5, true, 0.0, kSerial, plc::SimdTarget::kScalar);
+  const std::vector<double> expected = plc::covering_isos(
+      pyramid.pyramid, 0.5, true, 0.0, plc::SerialExecutor(plc::SimdTarget::kScalar));
   for (const plc::SimdTarget simd : plc::available_simd_targets()) {
     for (const unsigned threads : {1U, 4U}) {
-      REQUIRE(plc::covering_isos(pyramid.pyramid, 0.5, true, 0.0, ThreadExecutor(threads), simd) ==
+      REQUIRE(plc::covering_isos(pyramid.pyramid, 0.5, true, 0.0, ThreadExecutor(threads, simd)) ==
               expected);
     }
   }
@@ -196,7 +195,7 @@ TEST_CASE("no iso value of a level goes beyond the bound", "[pyramid]") {
     return ball(x, y, z, 35.5, 28) * (1.0 - ball(x, y, z, 35.5, 26.5)) * 0.9;
   });
   const auto isos = [&](double bound) {
-    return plc::covering_isos(pyramid.pyramid, 0.45, true, bound, kSerial, plc::best_simd_target());
+    return plc::covering_isos(pyramid.pyramid, 0.45, true, bound, kSerial);
   };
   REQUIRE(isos(0.0).back() < 0.3);
   REQUIRE(isos(0.3).back() == 0.3);

@@ -46,10 +46,10 @@ std::vector<T> make_voxels(const Dims& dims) {
   return voxels;
 }
 
-Pyramid must_build(const VolumeView& volume, const PyramidSpec& spec, const plc::Executor& executor,
-                   SimdTarget simd) {
+Pyramid must_build(const VolumeView& volume, const PyramidSpec& spec,
+                   const plc::Executor& executor) {
   Pyramid pyramid;
-  const Status status = plc::build_pyramid(volume, spec, executor, simd, pyramid);
+  const Status status = plc::build_pyramid(volume, spec, executor, pyramid);
   CAPTURE(status.message());
   REQUIRE(status.ok());
   REQUIRE(pyramid.levels.size() == static_cast<size_t>(spec.levels) + 1);
@@ -122,7 +122,8 @@ void require_definition(const PyramidLevel& from, const PyramidLevel& to) {
 Status build_status(const VolumeView& volume, const PyramidSpec& spec) {
   Pyramid pyramid;
   pyramid.levels.resize(5);  // of an earlier use
-  Status status = plc::build_pyramid(volume, spec, kSerial, SimdTarget::kScalar, pyramid);
+  Status status =
+      plc::build_pyramid(volume, spec, plc::SerialExecutor(SimdTarget::kScalar), pyramid);
   if (!status.ok()) REQUIRE(pyramid.levels.empty());
   return status;
 }
@@ -147,7 +148,7 @@ TEST_CASE("every level is the convolution (12) of the level below", "[pyramid]")
       spec.pad_value = 130;
       spec.pad_voxels = 1;
       CAPTURE(reduction, spacing[2]);
-      const Pyramid pyramid = must_build(volume, spec, kSerial, plc::best_simd_target());
+      const Pyramid pyramid = must_build(volume, spec, kSerial);
       for (size_t h = 0; h < 2; ++h) require_definition(pyramid.levels[h], pyramid.levels[h + 1]);
     }
   }
@@ -164,8 +165,8 @@ TEST_CASE("the pyramid is (10) to (12) from the volume up, also on odd sizes of 
     spec.levels = plc::max_levels(dims, reduction);
     spec.window_high = 200;
     spec.pad_voxels = 0;
-    const Pyramid pyramid = must_build({VoxelType::kU8, voxels.data(), dims, spacing}, spec,
-                                       kSerial, plc::best_simd_target());
+    const Pyramid pyramid =
+        must_build({VoxelType::kU8, voxels.data(), dims, spacing}, spec, kSerial);
     REQUIRE(spec.levels >= 1);
     reference::Level expected{dims, {}};
     for (const uint8_t v : voxels) expected.values.push_back(std::min(v / 200.0, 1.0));
@@ -192,7 +193,7 @@ TEST_CASE("sizes and units follow (11) and the real size stays", "[pyramid]") {
   spec.levels = 2;
   spec.window_high = 200;
   spec.pad_voxels = 1;
-  const Pyramid pyramid = must_build(volume, spec, kSerial, SimdTarget::kScalar);
+  const Pyramid pyramid = must_build(volume, spec, plc::SerialExecutor(SimdTarget::kScalar));
   const Dims expected[] = {{40, 30, 20}, {23, 17, 11}, {13, 9, 6}};
   for (size_t h = 0; h < 3; ++h) {
     const PyramidLevel& level = pyramid.levels[h];
@@ -213,10 +214,10 @@ TEST_CASE("the pyramid has the same bits for every target and any number of thre
   PyramidSpec spec;
   spec.window_low = 20;
   spec.window_high = 180;
-  const Pyramid expected = must_build(volume, spec, kSerial, SimdTarget::kScalar);
+  const Pyramid expected = must_build(volume, spec, plc::SerialExecutor(SimdTarget::kScalar));
   for (const SimdTarget simd : plc::available_simd_targets()) {
     for (const unsigned threads : {1U, 2U, 5U}) {
-      const Pyramid got = must_build(volume, spec, ThreadExecutor(threads), simd);
+      const Pyramid got = must_build(volume, spec, ThreadExecutor(threads, simd));
       for (size_t h = 0; h < got.levels.size(); ++h) {
         CAPTURE(plc::simd_target_name(simd), threads, h);
         REQUIRE(first_difference(samples::values_of(got.levels[h]),
@@ -240,9 +241,10 @@ TEMPLATE_TEST_CASE("equal voxels of any type make equal pyramids", "[pyramid]", 
   if (std::is_same_v<TestType, uint16_t>) type = VoxelType::kU16;
   if (std::is_same_v<TestType, int32_t>) type = VoxelType::kI32;
   for (const SimdTarget simd : plc::available_simd_targets()) {
-    const Pyramid expected =
-        must_build({VoxelType::kU8, bytes.data(), dims, {1, 1, 1}}, spec, kSerial, simd);
-    const Pyramid got = must_build({type, voxels.data(), dims, {1, 1, 1}}, spec, kSerial, simd);
+    const Pyramid expected = must_build({VoxelType::kU8, bytes.data(), dims, {1, 1, 1}}, spec,
+                                        plc::SerialExecutor(simd));
+    const Pyramid got =
+        must_build({type, voxels.data(), dims, {1, 1, 1}}, spec, plc::SerialExecutor(simd));
     for (size_t h = 0; h < 2; ++h) {
       REQUIRE(first_difference(samples::values_of(got.levels[h]),
                                samples::values_of(expected.levels[h])) == -1);
@@ -256,8 +258,7 @@ TEST_CASE("I_0 is the caller's own volume, read where it lies", "[pyramid]") {
   PyramidSpec spec;
   spec.levels = 1;
   spec.window_high = 200;
-  Pyramid pyramid = must_build({VoxelType::kU16, voxels.data(), dims, {1, 1, 1}}, spec, kSerial,
-                               plc::best_simd_target());
+  Pyramid pyramid = must_build({VoxelType::kU16, voxels.data(), dims, {1, 1, 1}}, spec, kSerial);
   REQUIRE(pyramid.levels[0].borrowed == voxels.data());
   REQUIRE(pyramid.levels[0].values.empty());
   REQUIRE_FALSE(pyramid.levels[1].values.empty());
@@ -265,8 +266,7 @@ TEST_CASE("I_0 is the caller's own volume, read where it lies", "[pyramid]") {
   // One with a window that floats do not hold cannot be.
   spec.window_high = 1e35;
   const std::vector<float> floats(voxels.begin(), voxels.end());
-  pyramid = must_build({VoxelType::kF32, floats.data(), dims, {1, 1, 1}}, spec, kSerial,
-                       plc::best_simd_target());
+  pyramid = must_build({VoxelType::kF32, floats.data(), dims, {1, 1, 1}}, spec, kSerial);
   REQUIRE(pyramid.levels[0].borrowed == nullptr);
 }
 
@@ -274,8 +274,8 @@ TEST_CASE("without its values a pyramid keeps its sizes", "[pyramid]") {
   const std::vector<uint8_t> voxels = make_voxels<uint8_t>({17, 14, 15});
   PyramidSpec spec;
   spec.levels = 1;
-  const Pyramid whole = must_build({VoxelType::kU8, voxels.data(), {17, 14, 15}, {1, 2, 1}}, spec,
-                                   kSerial, plc::best_simd_target());
+  const Pyramid whole =
+      must_build({VoxelType::kU8, voxels.data(), {17, 14, 15}, {1, 2, 1}}, spec, kSerial);
   const Pyramid bare = plc::without_values(whole);
   REQUIRE(bare.levels.size() == 2);
   for (size_t h = 0; h < 2; ++h) {
@@ -385,8 +385,8 @@ TEST_CASE("a pyramid of bytes takes the memory of its coarse levels alone", "[py
   PyramidSpec spec;
   spec.window_high = 10;
   const MemoryLimit limit(size_t{96} << 20);  // they take 34 MB; I_0 in floats would be 146
-  const Pyramid pyramid = must_build({VoxelType::kU8, voxels.data(), {320, 320, 320}, {1, 1, 1}},
-                                     spec, kSerial, plc::best_simd_target());
+  const Pyramid pyramid =
+      must_build({VoxelType::kU8, voxels.data(), {320, 320, 320}, {1, 1, 1}}, spec, kSerial);
   REQUIRE(pyramid.levels.size() == 4);
 }
 

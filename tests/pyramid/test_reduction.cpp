@@ -56,14 +56,14 @@ void require_tiles_do_not_show(const Dims& from, const Dims& to,
   std::array<plc::AxisTaps, 3> taps;
   for (size_t a = 0; a < 3; ++a) taps[a] = plc::make_axis_taps(from[a], to[a], spread[a]);
   const std::vector<float> expected = appendix_a(in, from, taps, to);
-  const plc::SerialExecutor serial;
-  const ThreadExecutor threads(3);
   for (const SimdTarget simd : plc::available_simd_targets()) {
+    const plc::SerialExecutor serial(simd);
+    const ThreadExecutor threads(3, simd);
     for (const plc::Executor* executor : {static_cast<const plc::Executor*>(&serial),
                                           static_cast<const plc::Executor*>(&threads)}) {
       CAPTURE(plc::simd_target_name(simd), executor == &serial);
       std::vector<float> got(volume(to), kUntouched);
-      REQUIRE(plc::reduce_image(view_of(in, from), taps, to, *executor, simd, got.data()));
+      REQUIRE(plc::reduce_image(view_of(in, from), taps, to, *executor, got.data()));
       REQUIRE(first_difference(got, expected) == -1);
     }
   }
@@ -99,13 +99,12 @@ TEMPLATE_TEST_CASE("a typed image is reduced as the same image in floats, bit fo
     for (size_t a = 0; a < 3; ++a) taps[a] = plc::make_axis_taps(from[a], to[a], 0.9);
     const std::vector<float> values = image.values();
     std::vector<float> expected(volume(to));
-    const ThreadExecutor threads(2);
-    REQUIRE(plc::reduce_image(image.unit_view(values), taps, to, threads, SimdTarget::kScalar,
-                              expected.data()));
+    REQUIRE(plc::reduce_image(image.unit_view(values), taps, to,
+                              ThreadExecutor(2, SimdTarget::kScalar), expected.data()));
     for (const SimdTarget simd : plc::available_simd_targets()) {
       CAPTURE(plc::simd_target_name(simd), pad);
       std::vector<float> got(volume(to), kUntouched);
-      REQUIRE(plc::reduce_image(image.view, taps, to, threads, simd, got.data()));
+      REQUIRE(plc::reduce_image(image.view, taps, to, ThreadExecutor(2, simd), got.data()));
       REQUIRE(first_difference(got, expected) == -1);
     }
   }
@@ -118,8 +117,7 @@ TEST_CASE("a white image stays within one", "[pyramid]") {
   const std::vector<float> in(volume(from), 1.0F);
   std::vector<float> out(volume(to));
   const plc::SerialExecutor serial;
-  REQUIRE(
-      plc::reduce_image(view_of(in, from), taps, to, serial, plc::best_simd_target(), out.data()));
+  REQUIRE(plc::reduce_image(view_of(in, from), taps, to, serial, out.data()));
   for (const float value : out) {
     REQUIRE(value <= 1.0F);
     REQUIRE(value > 0.999999F);
@@ -135,7 +133,6 @@ TEST_CASE("a tile without memory for its rows is reported", "[pyramid]") {
   std::vector<float> out(volume(to));
   const plc::SerialExecutor serial;
   const MemoryLimit limit(size_t{64} << 20);  // transposed rows take 256 MB
-  REQUIRE_FALSE(
-      plc::reduce_image(view_of(in, from), taps, to, serial, SimdTarget::kScalar, out.data()));
+  REQUIRE_FALSE(plc::reduce_image(view_of(in, from), taps, to, serial, out.data()));
 }
 #endif

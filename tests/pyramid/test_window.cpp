@@ -29,7 +29,7 @@ template <typename Voxel>
 Window window_of(VoxelType type, const std::vector<Voxel>& voxels, double iso, bool above,
                  const plc::Executor& executor = samples::kSerial) {
   const plc::VolumeView view{type, voxels.data(), {kSide, kSide, kSide}, {1, 1, 1}};
-  const plc::VoxelRange range = plc::voxel_range(view, executor, plc::best_simd_target());
+  const plc::VoxelRange range = plc::voxel_range(view, executor);
   return plc::derive_window(view, range, iso, above, executor);
 }
 

@@ -25,9 +25,8 @@ Result recovered(Run run, const plc::SizeSpec& sizes = {}) {
   run.recovery.sizes = sizes;
   Result r;
   const plc::Schedule schedule(2);
-  const auto target = plc::best_simd_target();
-  REQUIRE(plc::pyramidal_recover_shape(samples::pyramid_of(run), run.recovery, schedule, target, {},
-                                       r.mesh, r.records)
+  REQUIRE(plc::pyramidal_recover_shape(samples::pyramid_of(run), run.recovery, schedule, {}, r.mesh,
+                                       r.records)
               .message() == "");
   CHECK(plc::broken_invariant(r.mesh) == "");
   CHECK(plc::meeting_faces(r.mesh, schedule).empty());
@@ -121,10 +120,9 @@ TEST_CASE("an adaptive run that is saved and restored goes on with the same bits
   Run run = cube();
   run.recovery.sizes.emplace();
   const plc::Schedule schedule(2);
-  const auto target = plc::best_simd_target();
   std::vector<plc::LevelRecord> records, records_again;
   Mesh mesh, again;
-  plc::Recovery whole(samples::pyramid_of(run), run.recovery, schedule, target, {}, mesh, records);
+  plc::Recovery whole(samples::pyramid_of(run), run.recovery, schedule, {}, mesh, records);
   REQUIRE(whole.start().message() == "");
   for (int i = 0; i < 45; ++i) REQUIRE(whole.advance(plc::Amount::kIteration).message() == "");
   plc::StateWriter size;
@@ -132,7 +130,7 @@ TEST_CASE("an adaptive run that is saved and restored goes on with the same bits
   std::vector<uint8_t> bytes(size.size());
   plc::StateWriter writer(bytes.data());
   whole.save(writer);
-  plc::Recovery restored(samples::pyramid_of(run), run.recovery, schedule, target, {}, again,
+  plc::Recovery restored(samples::pyramid_of(run), run.recovery, schedule, {}, again,
                          records_again);
   plc::StateReader reader(bytes.data(), bytes.size());
   REQUIRE(restored.restore(reader));

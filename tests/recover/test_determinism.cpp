@@ -139,11 +139,11 @@ Run adaptive_run() {
 }
 
 uint64_t hash_of(const Run& run, int threads, SimdTarget target) {
-  const plc::Schedule schedule(threads);
+  const plc::Schedule schedule(threads, target);
   Mesh mesh;
   std::vector<plc::LevelRecord> records;
-  REQUIRE(plc::pyramidal_recover_shape(samples::pyramid_of(run, schedule, target), run.recovery,
-                                       schedule, target, {}, mesh, records)
+  REQUIRE(plc::pyramidal_recover_shape(samples::pyramid_of(run, schedule), run.recovery, schedule,
+                                       {}, mesh, records)
               .message() == "");
   return plc::state_hash(mesh);
 }
@@ -234,10 +234,8 @@ TEST_CASE("no pass of random runs tells one scalar thread from three of the best
     const plc::Pyramid pyramid = samples::pyramid_of(run);
     Mesh mesh;
     std::vector<plc::LevelRecord> records;
-    const plc::Schedule schedule(1);
-    if (!plc::pyramidal_recover_shape(pyramid, run.recovery, schedule, SimdTarget::kScalar, {},
-                                      mesh, records)
-             .ok()) {
+    const plc::Schedule schedule(1, SimdTarget::kScalar);
+    if (!plc::pyramidal_recover_shape(pyramid, run.recovery, schedule, {}, mesh, records).ok()) {
       continue;  // the object is lost
     }
     ++compared;

@@ -117,11 +117,11 @@ TEST_CASE("every pass of an iteration is seen, in its order", "[pass_observer]")
 
 TEST_CASE("who looks changes nothing", "[pass_observer]") {
   const samples::Run run = small_run();
-  const plc::Schedule schedule(1);
+  const plc::Schedule schedule(1, SimdTarget::kScalar);
   Mesh mesh;
   std::vector<plc::LevelRecord> records;
-  REQUIRE(plc::pyramidal_recover_shape(samples::pyramid_of(run), run.recovery, schedule,
-                                       SimdTarget::kScalar, {}, mesh, records)
+  REQUIRE(plc::pyramidal_recover_shape(samples::pyramid_of(run), run.recovery, schedule, {}, mesh,
+                                       records)
               .ok());
   CHECK(plc::state_hash(mesh) == traced().hash);
 }

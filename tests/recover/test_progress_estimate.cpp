@@ -49,9 +49,8 @@ std::vector<double> told_of(const Run& run) {
     return true;
   };
   const plc::Schedule schedule(1);
-  const plc::Status status =
-      plc::pyramidal_recover_shape(samples::pyramid_of(run), run.recovery, schedule,
-                                   plc::best_simd_target(), hooks, mesh, records);
+  const plc::Status status = plc::pyramidal_recover_shape(samples::pyramid_of(run), run.recovery,
+                                                          schedule, hooks, mesh, records);
   REQUIRE(status.ok());
   return told;
 }

@@ -32,8 +32,8 @@ Recovered recover(const Run& run, size_t most = 1000000) {
     r.progress.push_back(p);
     return r.progress.size() < most;
   };
-  r.status = plc::pyramidal_recover_shape(pyramid, run.recovery, schedule, plc::best_simd_target(),
-                                          {watch, {}}, r.mesh, r.records);
+  r.status =
+      plc::pyramidal_recover_shape(pyramid, run.recovery, schedule, {watch, {}}, r.mesh, r.records);
   return r;
 }
 
@@ -313,9 +313,7 @@ TEST_CASE("a run from the same input twice in one mesh is the same", "[recovery]
   samples::fill_mesh(mesh, samples::torus(40, 30, 9, 3), 1);  // forgotten
   mesh.clear();
   std::vector<LevelRecord> records;
-  REQUIRE(plc::pyramidal_recover_shape(pyramid, run.recovery, schedule, plc::best_simd_target(), {},
-                                       mesh, records)
-              .ok());
+  REQUIRE(plc::pyramidal_recover_shape(pyramid, run.recovery, schedule, {}, mesh, records).ok());
   CHECK(samples::sorted_faces(mesh) == samples::sorted_faces(first.mesh));
 }
 
@@ -328,8 +326,8 @@ TEST_CASE("a level that would have more vertices than there are ids is told befo
   std::vector<plc::LevelRecord> records;
   // Enough for the level before the last.
   mesh.most_vertices = recover(run).mesh.vertex_count() * 2 / 3;
-  const plc::Status status = plc::pyramidal_recover_shape(
-      pyramid, run.recovery, schedule, plc::best_simd_target(), {}, mesh, records);
+  const plc::Status status =
+      plc::pyramidal_recover_shape(pyramid, run.recovery, schedule, {}, mesh, records);
   CHECK(status.code() == plc::ErrorCode::kOutOfMemory);
   CHECK_THAT(status.message(), Catch::Contains("vertices at this resolution"));
   CHECK(plc::broken_invariant(mesh) == "");

@@ -185,8 +185,7 @@ TEST_CASE("a user who says stop gets that level's surface, in that level's space
       const plc::Schedule schedule(1);
       const plc::Pyramid pyramid = samples::pyramid_of(run);
       r.status = plc::pyramidal_recover_shape(
-          pyramid, run.recovery, schedule, plc::best_simd_target(),
-          answering([&](const LevelRecord& record) {
+          pyramid, run.recovery, schedule, answering([&](const LevelRecord& record) {
             // At the end of the level: without gaps, and what the caller gets if this is the last.
             CHECK(r.mesh.slots() == r.mesh.vertex_count());
             CHECK(r.mesh.vertex_count() == record.vertices);

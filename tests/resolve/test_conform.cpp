@@ -35,7 +35,7 @@ plc::ImageView view_of(const Volume& v) {
 
 plc::Status try_conform(Mesh& mesh, double delta, OperationCounts& counts, int threads = 1) {
   const plc::Schedule schedule(threads);
-  return plc::conform(mesh, delta, schedule, plc::best_simd_target(), counts);
+  return plc::conform(mesh, delta, schedule, counts);
 }
 
 struct Violations {

@@ -19,9 +19,8 @@ using plc::Resolution;
 using samples::Soup;
 
 struct Resolver {
-  explicit Resolver(Mesh& mesh, const plc::Executor& executor = samples::kSerial,
-                    plc::SimdTarget simd = plc::best_simd_target())
-      : detection(mesh, executor, simd), resolution(mesh, executor, simd, detection) {
+  explicit Resolver(Mesh& mesh, const plc::Executor& executor = samples::kSerial)
+      : detection(mesh, executor), resolution(mesh, executor, detection) {
     resolution.restart();
   }
   const plc::Vector<uint32_t>& search_due() {
@@ -168,13 +167,14 @@ TEST_CASE("whatever the mesh, a pass leaves it closed, embedded and of the count
 TEST_CASE("a pass has the same result for any executor and SIMD target", "[resolution]") {
   for (const double delta : {0.06, 0.3}) {
     std::vector<uint64_t> hashes;
-    const fixtures::ThreadExecutor threads(3);
-    for (const plc::Executor* executor : {static_cast<const plc::Executor*>(&samples::kSerial),
-                                          static_cast<const plc::Executor*>(&threads)}) {
-      for (const plc::SimdTarget simd : plc::available_simd_targets()) {
+    for (const plc::SimdTarget simd : plc::available_simd_targets()) {
+      const plc::SerialExecutor serial(simd);
+      const fixtures::ThreadExecutor threads(3, simd);
+      for (const plc::Executor* executor : {static_cast<const plc::Executor*>(&serial),
+                                            static_cast<const plc::Executor*>(&threads)}) {
         Mesh mesh;
         samples::fill_mesh(mesh, spheres(0.12), delta);
-        Resolver resolver(mesh, *executor, simd);
+        Resolver resolver(mesh, *executor);
         for (uint32_t iteration = 1; iteration <= 3; ++iteration) {
           resolver.search_all();
           resolver.run(iteration);

@@ -134,7 +134,8 @@ struct Taps {
 
 class ThreadExecutor final : public plc::Executor {
  public:
-  explicit ThreadExecutor(unsigned threads) : threads_(threads) {}
+  explicit ThreadExecutor(unsigned threads, plc::SimdTarget simd = plc::best_simd_target())
+      : Executor(simd), threads_(threads) {}
   void run(size_t tasks, const std::function<void(size_t)>& body) const override {
     std::atomic<size_t> next{tasks};  // from the last to the first: unlike SerialExecutor
     std::vector<std::thread> threads;

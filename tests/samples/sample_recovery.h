@@ -19,8 +19,8 @@ inline Recovered recover(const Run& run, const plc::RecoveryHooks& hooks = {}) {
   const plc::Schedule schedule(1);
   const plc::Pyramid pyramid = pyramid_of(run);
   REQUIRE(!pyramid.levels.empty());
-  r.status = plc::pyramidal_recover_shape(pyramid, run.recovery, schedule, plc::best_simd_target(),
-                                          hooks, r.mesh, r.records);
+  r.status =
+      plc::pyramidal_recover_shape(pyramid, run.recovery, schedule, hooks, r.mesh, r.records);
   return r;
 }
 

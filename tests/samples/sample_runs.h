@@ -32,11 +32,9 @@ inline Run make_run(std::string name, Volume volume, double iso, int levels) {
 }
 
 // It borrows the run's volume.
-inline plc::Pyramid pyramid_of(const Run& run, const plc::Executor& executor = kSerial,
-                               plc::SimdTarget target = plc::best_simd_target()) {
+inline plc::Pyramid pyramid_of(const Run& run, const plc::Executor& executor = kSerial) {
   plc::Pyramid pyramid;
-  const plc::Status status =
-      plc::build_pyramid(run.volume.view(), run.pyramid, executor, target, pyramid);
+  const plc::Status status = plc::build_pyramid(run.volume.view(), run.pyramid, executor, pyramid);
   if (!status.ok()) pyramid.levels.clear();
   return pyramid;
 }

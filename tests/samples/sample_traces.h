@@ -31,7 +31,7 @@ struct Trace {
 using Fault = std::function<void(int iteration, const std::string& pass, plc::Mesh& mesh)>;
 
 inline Trace traced(const Run& run, int threads, plc::SimdTarget target, const Fault& fault = {}) {
-  const plc::Schedule schedule(threads);
+  const plc::Schedule schedule(threads, target);
   plc::Mesh mesh;
   Trace trace;
   int iteration = 0;
@@ -47,8 +47,8 @@ inline Trace traced(const Run& run, int threads, plc::SimdTarget target, const F
     if (fault) fault(iteration, pass, mesh);
     trace.steps.push_back({iteration, pass, writes, evolution.hashes()});
   };
-  REQUIRE(plc::pyramidal_recover_shape(pyramid_of(run, schedule, target), run.recovery, schedule,
-                                       target, hooks, mesh, trace.records)
+  REQUIRE(plc::pyramidal_recover_shape(pyramid_of(run, schedule), run.recovery, schedule, hooks,
+                                       mesh, trace.records)
               .message() == "");
   trace.hash = plc::state_hash(mesh);
   return trace;

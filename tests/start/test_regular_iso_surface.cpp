@@ -33,9 +33,7 @@ Both surfaces_of(const samples::Volume& volume, float iso, int threads = 1) {
   const plc::Schedule schedule(threads);
   Both both;
   REQUIRE(plc::iso_surface({view, iso, true}, values, schedule, both.plain).ok());
-  REQUIRE(plc::regular_iso_surface({view, iso, true}, values, schedule, plc::best_simd_target(),
-                                   both.regular)
-              .ok());
+  REQUIRE(plc::regular_iso_surface({view, iso, true}, values, schedule, both.regular).ok());
   return both;
 }
 

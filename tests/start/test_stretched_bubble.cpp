@@ -38,9 +38,7 @@ TEST_CASE("a long, flat or thin bubble is one closed surface that is as fine as 
       if (power == 2 && half[1] > 4 * half[0] && half[2] > 4 * half[0]) continue;
       REQUIRE(plc::is_stretched(half));
       Mesh mesh;
-      REQUIRE(plc::make_stretched_bubble(mesh, {5, -7, 11}, half, power, 0.83, schedule,
-                                         plc::best_simd_target())
-                  .ok());
+      REQUIRE(plc::make_stretched_bubble(mesh, {5, -7, 11}, half, power, 0.83, schedule).ok());
       CAPTURE(half[0], half[1], half[2], power);
       CHECK(plc::broken_invariant(mesh) == "");
       CHECK(mesh.delta == 0.83);
@@ -68,8 +66,7 @@ TEST_CASE("the bubble around a long image, and a ball of millimetres in flat vox
     start.seeds = {{{4, 150, 4}, {3, 40, 3}}};
     Mesh mesh;
     plc::OperationCounts counts;
-    REQUIRE(plc::start_surface(start, level, 0.83, schedule, plc::best_simd_target(), mesh, counts)
-                .ok());
+    REQUIRE(plc::start_surface(start, level, 0.83, schedule, mesh, counts).ok());
     CHECK(samples::component_count(mesh) == 1);
     CHECK(density(mesh) < 0.5);
   }
