@@ -1,0 +1,17 @@
+// An image out of a file that has been dropped: {name, dims, voxels, spacing, origin, direction}, in LPS
+// and mm as plc_image has it.
+import { bytesOf } from './bytes.js';
+import { refuse } from './failure.js';
+import { isNifti, readNifti } from './nifti.js';
+import { isNrrd, readNrrd } from './nrrd.js';
+
+const HEAD = 540;  // bytes, the longest header whose kind is asked for
+
+export async function readImage(file) {
+  const bytes = await bytesOf(file);
+  const head = new Uint8Array(HEAD);
+  const known = head.subarray(0, await bytes.fill(head));
+  if (isNrrd(known)) return readNrrd(file, (begin, packed) => bytesOf(file, { begin, packed }));
+  if (isNifti(known)) return readNifti(file.name, known.slice(), bytes);
+  return refuse(`${file.name}: is neither NIfTI (.nii, .nii.gz) nor NRRD (.nrrd)`);
+}
