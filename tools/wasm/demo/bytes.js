@@ -35,6 +35,17 @@ export class Bytes {
     return count;
   }
 
+  // The first ones, up to `count`, which are read again afterwards.
+  async peek(count) {
+    const head = new Uint8Array(count);
+    const some = head.slice(0, await this.fill(head));
+    const left = new Uint8Array(some.length + this.left.length);
+    left.set(some);
+    left.set(this.left, some.length);
+    this.left = left;
+    return some;
+  }
+
   async skip(count) {
     const some = new Uint8Array(Math.min(count, 2 ** 16));
     for (let left = count; left > 0; left -= some.length) {

@@ -28,6 +28,7 @@ export async function extraction(image, choices, signal, told) {
     normals: true,
     signal,
     ...told,
+    previewInterval: 50,
     engine: await engine,
     worker: () => new Worker(code),
   });

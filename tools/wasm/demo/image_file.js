@@ -9,9 +9,8 @@ const HEAD = 540;  // bytes, the longest header whose kind is asked for
 
 export async function readImage(file) {
   const bytes = await bytesOf(file);
-  const head = new Uint8Array(HEAD);
-  const known = head.subarray(0, await bytes.fill(head));
-  if (isNrrd(known)) return readNrrd(file, (begin, packed) => bytesOf(file, { begin, packed }));
-  if (isNifti(known)) return readNifti(file.name, known.slice(), bytes);
+  const head = await bytes.peek(HEAD);
+  if (isNrrd(head)) return readNrrd(file, (begin, packed) => bytesOf(file, { begin, packed }));
+  if (isNifti(head)) return readNifti(file.name, head, bytes);
   return refuse(`${file.name}: is neither NIfTI (.nii, .nii.gz) nor NRRD (.nrrd)`);
 }

@@ -6,7 +6,7 @@ import { made, row } from '../../view/page/panel.js';
 import { changed, nobodyListens, setCursor, state } from '../../view/page/state.js';
 import { Surface } from '../../view/page/surface.js';
 import { commandLine, extraction } from './extraction.js';
-import { lineOf } from './failure.js';
+import { lineOf, refuse } from './failure.js';
 import { greysOf } from './greys.js';
 import { Histogram } from './histogram.js';
 import { HistogramView } from './histogram_view.js';
@@ -117,7 +117,7 @@ async function open(file) {
   try {
     const read = await readImage(file);
     const values = new Histogram(read.voxels);
-    if (!(values.low < values.high)) throw new RangeError(`${file.name}: all its voxels have the value ${values.low}`);
+    if (!(values.low < values.high)) refuse(`${file.name}: all its voxels have the value ${values.low}`);
     [image, histogram] = [read, values];
     showImage();
   } catch (error) {

@@ -53,7 +53,7 @@ function placed(name, header, dims) {
   return { spacing, direction, origin };
 }
 
-// head: the first bytes of the file, unpacked; bytes: those from there on.
+// bytes: of the file, unpacked; head: the first of them.
 export async function readNifti(name, head, bytes) {
   const wide = [true, false].some((little) => new DataView(head.buffer).getInt32(0, little) === SIZES[2]);
   const magic = String.fromCharCode(...head.subarray(wide ? 4 : 344, wide ? 7 : 347));
@@ -73,7 +73,7 @@ export async function readNifti(name, head, bytes) {
   const place = placed(name, header, dims);
   const scaled = Number.isFinite(header.scl_slope) && header.scl_slope !== 0;
   const scale = scaled ? { slope: header.scl_slope, intercept: Number.isFinite(header.scl_inter) ? header.scl_inter : 0 } : {};
-  await bytes.skip(begin - head.length);
+  await bytes.skip(begin);
   const voxels = voxelsFrom(name, await bytes.voxels(needed), type, { bigEndian: !header.littleEndian, ...scale });
   return { name, dims, voxels, ...place };
 }
