@@ -20,4 +20,5 @@ source "$tests/tools/command_helpers.sh"
 "$pellicle" phantom chain -o chain.nrrd >/dev/null || exit 1
 head=/usr/share/doc/invesalius-examples/examples/Cranium.inv3
 if [ -e $head ]; then "$tests/wasm/head_ct" $head head.nrrd || exit 1; fi
+# shellcheck disable=SC2154 # $here is of command_helpers.sh
 node "$tests/wasm/demo_page.mjs" "$npm" "$chromium" "$pellicle" "$page" "$here"
