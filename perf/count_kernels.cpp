@@ -1,6 +1,6 @@
-// Each kernel of the movement once on each instruction set of this machine, between the lines "begin"
-// and "end" on stdout, then what it was. perf/instructions runs it under qemu, where the plugin of
-// part/count_instructions.c counts at each line.
+// Each kernel of the movement once on each instruction set of this machine, between the lines
+// "begin" and "end" on stdout, then what it was. perf/instructions runs it under qemu, where the
+// plugin of part/count_instructions.c counts at each line.
 #include <unistd.h>
 
 #include <cmath>
@@ -28,8 +28,12 @@ int main() {
       tell("begin\n");
       kernel(b, simd);
       tell("end\n");
-      tell(name + ' ' + std::string(plc::simd_target_name(simd)) + ' ' + vertices + ' ' +
-           std::to_string(b.hash()) + '\n');
+      std::string line = name;
+      for (const std::string& word :
+           {std::string(plc::simd_target_name(simd)), vertices, std::to_string(b.hash())}) {
+        line.append(1, ' ').append(word);
+      }
+      tell(line.append(1, '\n'));
     }
   }
   return 0;
