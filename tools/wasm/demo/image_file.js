@@ -1,5 +1,5 @@
-// An image out of a file that has been dropped: {name, dims, voxels, spacing, origin, direction}, in LPS
-// and mm as plc_image has it.
+// An image out of a file that has been dropped: {name, dims, voxels, spacing, origin, direction, notes}, in
+// LPS and mm as plc_image has it; notes are lines that the user should know, or undefined.
 import { bytesOf } from './bytes.js';
 import { refuse } from './failure.js';
 import { isNifti, readNifti } from './nifti.js';

@@ -81,7 +81,7 @@ function boxRows() {
 }
 
 function notesOf(grey) {
-  const notes = [];
+  const notes = [...(image.notes ?? [])];
   if (grey.reduction.some((f) => f > 1)) notes.push(`The image is shown reduced to ${textOf(grey.grid)} voxels, each the mean of ${textOf(grey.reduction)}; it is extracted as it is`);
   if (!grey.exact) notes.push(`Values ${grey.window.map((x) => Number(x.toPrecision(5))).join(' .. ')} are shown in 256 greys; it is extracted as it is`);
   return notes;
@@ -273,7 +273,7 @@ try {
   byId('title').textContent = 'Pellicle: surfaces from 3D images';
   for (const id of ['point-panel', 'surface-panel', 'image-panel', 'distance-panel', 'note-panel']) byId(id).hidden = true;
   // For tests, and for whoever opens the browser's console.
-  window.pellicle = { state, setCursor, open, get views() { return views; } };
+  window.pellicle = { state, setCursor, get views() { return views; } };
 } catch (error) {
   byId('failure').hidden = false;
   byId('failure').textContent = error.message;

@@ -75,5 +75,7 @@ export async function readNifti(name, head, bytes) {
   const scale = scaled ? { slope: header.scl_slope, intercept: Number.isFinite(header.scl_inter) ? header.scl_inter : 0 } : {};
   await bytes.skip(begin);
   const voxels = voxelsFrom(name, await bytes.voxels(needed), type, { bigEndian: !header.littleEndian, ...scale });
-  return { name, dims, voxels, ...place };
+  const placeless = header.sform_code <= 0 && header.qform_code <= 0;
+  const notes = placeless ? ['The file says nothing of its place: its centre is taken for the origin, its first axis to run to the left'] : [];
+  return { name, dims, voxels, ...place, notes };
 }
