@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian packages that the named purposes need:
 #   tools/setup.sh [build] [test] [python] [demo] [lint] [compilers] [perf] [peers] [fuzz]
-#     [package] [coverage] [valgrind] [page] [view] [arm] [wasm] [windows]
+#     [package] [coverage] [valgrind] [page] [view] [arm] [counts] [wasm] [windows]
 # Without a purpose: build and test, as cmake builds the tests, too, unless told otherwise.
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
@@ -23,6 +23,7 @@ package=(dpkg-dev file)
 coverage=(gcovr jq)
 valgrind=(valgrind)
 arm=(g++-aarch64-linux-gnu qemu-user-static libtbb-dev:arm64 libhwy-dev:arm64 libmimalloc2.0:arm64)
+counts=(qemu-user)  # what perf/instructions counts by: plugins need the one that is not static
 wasm=(emscripten nodejs catch2)
 windows=(g++-mingw-w64-x86-64-posix)
 page=(nodejs npm)  # the page of pellicle view
@@ -47,11 +48,12 @@ for purpose in "$@"; do
     page) wanted+=("${page[@]}") ;;
     view) wanted+=("${view[@]}") ;;
     arm) wanted+=("${arm[@]}") ;;
+    counts) wanted+=("${counts[@]}") ;;
     wasm) wanted+=("${wasm[@]}") ;;
     windows) wanted+=("${windows[@]}") ;;
     *)
       echo "setup.sh: unknown purpose $purpose: build, test, python, demo, lint, compilers, perf," \
-        "peers, fuzz, package, coverage, valgrind, page, view, arm, wasm or windows" >&2
+        "peers, fuzz, package, coverage, valgrind, page, view, arm, counts, wasm or windows" >&2
       exit 2
       ;;
   esac

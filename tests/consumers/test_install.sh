@@ -135,5 +135,36 @@ for ask in "99.0" "0.2" "COMPONENTS;nonsense"; do
   grep -qi pellicle "$here/log" || fails "find_package(Pellicle $ask) does not say what is wrong"
 done
 
+# ---- without oneTBB
+# Only base/tbb_arena.cpp is compiled otherwise then (engine/CMakeLists.txt): all else is taken from the build.
+without=$here/without
+quietly "configuring without oneTBB" cmake -G "Unix Makefiles" -S "$source" -B "$without" -DPELLICLE_TBB=OFF \
+  -DCMAKE_BUILD_TYPE=Release -DPELLICLE_TOOLS=OFF -DPELLICLE_TESTS=OFF -DPELLICLE_SHARED=OFF
+quietly "compiling without oneTBB" cmake --build "$without/engine" --target base/tbb_arena.cpp.o
+cp "$libdir/libpellicle.a" "$without/engine/"
+ar d "$without/engine/libpellicle.a" tbb_arena.cpp.o
+ar qs "$without/engine/libpellicle.a" "$(find "$without" -name tbb_arena.cpp.o)"
+quietly "installing without oneTBB" cmake --install "$without" --prefix "$here/alone"
+alone=$(dirname "$(find "$here/alone" -name libpellicle.a)")
+nm -u "$alone/libpellicle.a" | grep -q "U _ZN3tbb" && fails "the library without oneTBB calls it"
+named=$(grep -rIil tbb "$alone/pkgconfig" "$alone"/cmake/Pellicle/Pellicle-*.cmake)
+[ -z "$named" ] || fails "installed without oneTBB, but named in $named"
+for host in host_c host_cpp; do
+  folder=$here/consumers/$host
+  out=$here/$host-alone
+  # As on a machine without it.
+  quietly "$host without oneTBB" cmake -S "$folder" -B "$out" -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_PREFIX_PATH="$here/alone" -DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON -DHOST_PELLICLE=Pellicle::pellicle &&
+    quietly "$host without oneTBB" cmake --build "$out" && runs static "$out/$host"
+  rm -f "$folder/$host"
+  quietly "$host by pkg-config without oneTBB" env PKG_CONFIG_PATH="$alone/pkgconfig" make -C "$folder" STATIC=1 &&
+    runs static "$folder/$host"
+  readelf -d "$out/$host" "$folder/$host" | grep -q tbb && fails "$host links oneTBB, which it does not need"
+done
+# With it a host of the static library needs it, and is told.
+if cmake -S "$here/consumers/host_c" -B "$here/missing" -DCMAKE_PREFIX_PATH="$prefix" \
+  -DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON -DHOST_PELLICLE=Pellicle::pellicle_static >"$here/log" 2>&1
+then fails "the static library is found without the oneTBB that it needs"; fi
+
 if [ $failures -gt 0 ]; then echo "$failures failures"; exit 1; fi
 echo "All as expected."

@@ -3,55 +3,13 @@
 //   node view_pages.mjs NPM_FOLDER CHROMIUM VIEW_CONTOURS FOLDER        run by test_view.sh
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { join } from 'node:path';
+import * as pages from './pages.mjs';
+import { check, seen, settled } from './pages.mjs';
 
 const [npm, chromium, contours, folder] = process.argv.slice(2);
-const puppeteer = createRequire(join(npm, 'package.json'))('puppeteer-core');
-let failures = 0;
-function check(what, holds, found = '') {
-  if (holds) return;
-  console.log(`FAILED: ${what} ${found}`);
-  ++failures;
-}
-
-const browser = await puppeteer.launch({
-  executablePath: chromium,
-  // Without the last two there is no WebGL, and nothing would be tested.
-  args: ['--no-sandbox', '--headless=new', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-  protocolTimeout: 120000,
-});
-
-async function opened(name) {
-  const page = await browser.newPage();
-  await page.setViewport({ width: 1100, height: 760 });
-  const url = `file://${join(folder, name)}`;
-  page.on('request', (request) => check(`${name} fetches`, request.url() === url || /^(data|blob):/.test(request.url()), request.url()));
-  page.on('console', (message) => check(`${name} says`, false, message.text()));
-  page.on('pageerror', (error) => check(`${name} fails`, false, error.message));
-  await page.goto(url);
-  await page.evaluate(() => window.pellicle.then(() => null));
-  await settled(page);
-  return page;
-}
-const settled = (page) => page.evaluate(() => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done))); }));
-
-// What is seen of a view: [colours, pixels that are not as the first one], by the browser's decoder.
-async function seen(page, view, part = '') {
-  const element = await page.$(`[data-view="${view}"] ${part}`.trim());
-  const picture = await element.screenshot({ encoding: 'base64' });
-  const reader = await browser.newPage();
-  const result = await reader.evaluate(async (base64) => {
-    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-    const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
-    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
-    context.drawImage(bitmap, 0, 0);
-    const pixels = new Uint32Array(context.getImageData(0, 0, bitmap.width, bitmap.height).data.buffer);
-    return { colours: new Set(pixels).size, drawn: pixels.filter((p) => p !== pixels[0]).length, sum: pixels.reduce((s, p) => (s * 31 + p) % 4294967291, 7) };
-  }, picture);
-  await reader.close();
-  return result;
-}
+await pages.start(npm, chromium);
+const opened = (name) => pages.opened(join(folder, name));
 
 function header(image) {
   const text = readFileSync(join(folder, image), 'utf8');
@@ -286,6 +244,6 @@ for (const [html, image, files, space] of [
   await page.close();
 }
 
-await browser.close();
-console.log(failures ? `${failures} failures in the browser` : 'the pages are as expected');
-process.exit(failures ? 1 : 0);
+await pages.end();
+console.log(pages.failures ? `${pages.failures} failures in the browser` : 'the pages are as expected');
+process.exit(pages.failures ? 1 : 0);

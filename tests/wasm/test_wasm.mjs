@@ -1,9 +1,11 @@
 // The npm package in node: the recorded surface, progress, cancelling, errors of one line.
 //   PELLICLE_PACKAGE=FOLDER node --test tests/wasm/test_wasm.mjs
 import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
 import path from 'node:path';
 import test from 'node:test';
 import { pathToFileURL } from 'node:url';
+import { Worker } from 'node:worker_threads';
 
 const folder = path.resolve(process.env.PELLICLE_PACKAGE);
 const { extract, PellicleError } = await import(pathToFileURL(path.join(folder, 'pellicle.mjs')));
@@ -36,6 +38,49 @@ test('the surface is the recorded one, closed and of typed arrays', async () => 
   const vertices = surface.vertices.length / 3, faces = surface.faces.length / 3;
   assert.equal(vertices - faces / 2, 2);  // Euler's, of a sphere: edges are 3/2 of the faces
   assert.ok(surface.faces.every((v) => v < vertices));
+});
+
+test('measures are those of the surface, and it has come to rest', async () => {
+  const { measures, converged, vertices, faces } = await extract(balls(), kDims, { ...kOptions, maxIterations: 1000 });
+  assert.equal(converged, true);
+  assert.deepEqual([measures.components, measures.euler, measures.genus], [1, 2, 0]);
+  const p = (v) => [0, 1, 2].map((k) => vertices[3 * v + k]);
+  let volume = 0;
+  for (let f = 0; f < faces.length; f += 3) {
+    const [a, b, c] = [p(faces[f]), p(faces[f + 1]), p(faces[f + 2])];
+    volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6;
+  }
+  assert.ok(Math.abs(volume - measures.volume) < 1e-3 * volume);
+  assert.ok(measures.area ** 3 > 36 * Math.PI * measures.volume ** 2);  // no less than a ball's
+  assert.equal((await extract(balls(), kDims, { ...kOptions, maxIterations: 3 })).converged, false);
+});
+
+test('previews are surfaces on the way, and change nothing', async () => {
+  const told = [];
+  const surface = await extract(balls(), kDims, { ...kOptions, previewInterval: 0, preview: (p) => told.push(p) });
+  assert.equal(surface.hash, kHash);
+  assert.ok(told.length > 3);
+  for (const { vertices, faces } of told) {
+    assert.ok(vertices instanceof Float32Array && faces instanceof Uint32Array);
+    assert.equal(vertices.length / 3 - faces.length / 6, 2);
+  }
+  assert.ok(told.at(-1).vertices.length > told[0].vertices.length);
+});
+
+test('what listens to previews may throw, and ends the extraction', async () => {
+  const wrong = new Error('of the listener');
+  await assert.rejects(extract(balls(), kDims, { ...kOptions, preview: () => { throw wrong; } }), wrong);
+});
+
+test('a host gives the engine and the worker itself', async () => {
+  const engine = await WebAssembly.compile(await readFile(path.join(folder, 'pellicle.wasm')));
+  let started = 0;
+  const worker = () => {
+    ++started;
+    return new Worker(path.join(folder, 'worker.mjs'));
+  };
+  for (let run = 1; run <= 2; ++run) assert.equal((await extract(balls(), kDims, { ...kOptions, engine, worker })).hash, kHash);
+  assert.equal(started, 2);
 });
 
 test('progress is told after every iteration and never falls', async () => {

@@ -29,7 +29,10 @@ file(RELATIVE_PATH prefix_from_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 string(REGEX REPLACE "/$" "" prefix_from_pc "${prefix_from_pc}")
 # What the static library needs, which pkg-config --static tells, or always where it is alone. As
 # libraries: packages of pkg-config would have to be there for hosts of the shared library, too.
-set(pc_libs_private "-ltbb -lhwy -lstdc++ -lm -lpthread -ldl")
+set(pc_libs_private "-lhwy -lstdc++ -lm -lpthread -ldl")
+if(PELLICLE_TBB)
+  string(PREPEND pc_libs_private "-ltbb ")
+endif()
 if(NOT TARGET pellicle_shared)
   set(pc_libs " ${pc_libs_private}")
   set(pc_libs_private "")

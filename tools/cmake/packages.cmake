@@ -33,7 +33,10 @@ set(CPACK_DEBIAN_LIBPELLICLE-DEV_PACKAGE_NAME libpellicle-dev)
 set(CPACK_DEBIAN_LIBPELLICLE-DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBPELLICLE-DEV_PACKAGE_DEPENDS "${same_version}")
 # What a host that links the static library needs.
-set(CPACK_DEBIAN_LIBPELLICLE-DEV_PACKAGE_SUGGESTS "libtbb-dev, libhwy-dev")
+set(CPACK_DEBIAN_LIBPELLICLE-DEV_PACKAGE_SUGGESTS "libhwy-dev")
+if(PELLICLE_TBB)
+  string(PREPEND CPACK_DEBIAN_LIBPELLICLE-DEV_PACKAGE_SUGGESTS "libtbb-dev, ")
+endif()
 set(CPACK_COMPONENT_LIBPELLICLE-DEV_DESCRIPTION "closed triangulated surfaces from 3D images (development)
 ${about}This package holds the C header, the static library, and the files for
 CMake's find_package(Pellicle) and for pkg-config.")

@@ -41,8 +41,9 @@ function triple(name, value, fallback, count = 3) {
   return numbers;
 }
 
-// voxels: a typed array, x fastest; dims: three numbers. told: {progress(p), log(level, line)}.
-export async function extractHere(bytes, voxels, dims, options, told) {
+// code: bytes or a WebAssembly.Module. voxels: a typed array, x fastest; dims: three numbers. told: {progress(p), log(level, line)}, and where
+// the surface is wanted on the way {preview(surface), every: milliseconds between two at least}.
+export async function extractHere(code, voxels, dims, options, told) {
   const type = kTypes.get(voxels?.constructor);
   if (type === undefined) refuse('voxels: must be a Uint8Array, Int16Array, Uint16Array, Int32Array or Float32Array');
   const size = triple('dims', dims);
@@ -64,7 +65,7 @@ export async function extractHere(bytes, voxels, dims, options, told) {
     const all = new Uint8Array(memory.buffer);
     return new TextDecoder().decode(all.slice(at, all.indexOf(0, at)));
   };
-  const { instance } = await WebAssembly.instantiate(bytes, {
+  const made = await WebAssembly.instantiate(code, {
     pellicle: {
       progress: (level, levels, iteration, vertices, fraction, seconds) =>
         told.progress?.({ level, levels, iteration, vertices, fraction, seconds }),
@@ -88,7 +89,7 @@ export async function extractHere(bytes, voxels, dims, options, told) {
       environ_get: () => 0,
     },
   });
-  const engine = instance.exports;
+  const engine = (made.instance ?? made).exports;
   memory = engine.memory;
   engine._initialize?.();
   const check = (status) => {
@@ -121,23 +122,49 @@ export async function extractHere(bytes, voxels, dims, options, told) {
     });
     if (option === 'levelIso') engine.set_parameter(word('level_iso_count'), 0, values.length);
   }
-  check(engine.extract(type, placed(voxels.constructor, voxels), ...size, placed(Float64Array, geometry)));
+  engine.set_image(type, placed(voxels.constructor, voxels), ...size, placed(Float64Array, geometry));
 
   // `fill` writes the values, which are copied out of the engine's memory.
   const taken = (Type, length, fill) => {
     const made = room(Type, length);
-    check(fill(space, made.at));
-    return made.view().slice();
+    try {
+      check(fill(space, made.at));
+      return made.view().slice();
+    } finally {
+      engine.release(made.at);
+    }
   };
-  const vertices = engine.vertex_count(), faces = engine.face_count();
+  const triangles = () => ({
+    vertices: taken(Float32Array, 3 * engine.vertex_count(), engine.positions),
+    faces: taken(Uint32Array, 3 * engine.face_count(), engine.faces),
+  });
+  if (told.preview) {
+    check(engine.run_start());
+    let next = 0;
+    while (!engine.run_done()) {
+      check(engine.run_advance());
+      const begin = performance.now();
+      if (begin < next) continue;
+      check(engine.take_surface());
+      told.preview(triangles());
+      const end = performance.now();
+      next = end + Math.max(told.every, 9 * (end - begin));  // looking takes no more than a tenth
+    }
+    check(engine.take_surface());
+  } else {
+    check(engine.extract());
+  }
+
+  const [components, euler, genus, area, volume] = taken(Float64Array, 5, engine.measure);
   const hex = (n) => (n >>> 0).toString(16).padStart(8, '0');
   const result = {
-    vertices: taken(Float32Array, 3 * vertices, engine.positions),
-    faces: taken(Uint32Array, 3 * faces, engine.faces),
+    ...triangles(),
+    measures: { components, euler, genus, area, volume },
+    converged: engine.converged() === 1,
     hash: hex(engine.hash_high()) + hex(engine.hash_low()),
     simd: text(engine.simd()),
     version: text(engine.version()),
   };
-  if (options.normals) result.normals = taken(Float32Array, 3 * vertices, engine.normals);
+  if (options.normals) result.normals = taken(Float32Array, 3 * engine.vertex_count(), engine.normals);
   return result;
 }

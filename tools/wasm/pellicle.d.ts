@@ -39,16 +39,42 @@ export interface Options {
   signal?: AbortSignal;
   progress?: (progress: Progress) => void;
   log?: (level: 'info' | 'warning', line: string) => void;
+  /** Is given the surface as it grows, valid at any time. Takes more memory, and the time of copying it. */
+  preview?: (surface: Triangles) => void;
+  /** Between two previews, milliseconds at least; 250 unless told. */
+  previewInterval?: number;
+  /**
+   * What pages need that cannot fetch files, as those that are opened from disk: the bytes of
+   * pellicle.wasm, or what WebAssembly.compile makes of them, and a worker that runs worker.mjs. It
+   * is ended with the extraction.
+   */
+  engine?: BufferSource | WebAssembly.Module;
+  worker?: () => Worker;
   [parameter: string]: unknown;
 }
 
-export interface Surface {
+export interface Triangles {
   /** x, y, z of every vertex. */
   vertices: Float32Array;
   /** Three vertices of every face, counter-clockwise seen from outside. */
   faces: Uint32Array;
+}
+
+export interface Surface extends Triangles {
   /** Outward, of length 1; where they were asked for. */
   normals?: Float32Array;
+  measures: {
+    components: number;
+    /** Vertices - edges + faces. */
+    euler: number;
+    /** Of all components together. */
+    genus: number;
+    /** In the space of the vertices, mm2 and mm3 in patient space. */
+    area: number;
+    volume: number;
+  };
+  /** Whether every level came to rest; false where `maxIterations` ended one. */
+  converged: boolean;
   /** 16 hexadecimal digits: two surfaces are the same, bit for bit, where these are. */
   hash: string;
   /** The instruction set that was computed with: 'wasm'. */

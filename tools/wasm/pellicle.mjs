@@ -13,13 +13,14 @@ async function startWorker() {
 }
 
 export async function extract(voxels, dims, options = {}) {
-  const { signal, progress, log, ...rest } = options;
+  const { signal, progress, log, preview, previewInterval = 250, engine, worker: hostsWorker, ...rest } = options;
   signal?.throwIfAborted();
-  const worker = await startWorker();
+  const worker = hostsWorker ? hostsWorker() : await startWorker();
   try {
     return await new Promise((resolve, reject) => {
       const receive = (message) => {
         if (message.progress) progress?.(message.progress);
+        else if (message.preview) preview(message.preview);
         else if (message.log) log?.(message.log.level, message.log.line);
         else if (message.error) reject(new PellicleError(message.error.status, message.error.message));
         else resolve(message.result);
@@ -37,11 +38,11 @@ export async function extract(voxels, dims, options = {}) {
         worker.on('error', reject);
       } else {
         worker.onmessage = (event) => guarded(event.data);
-        worker.onerror = (event) => reject(new PellicleError('internal', event.message));
+        worker.onerror = (event) => reject(new PellicleError('internal', event.message ?? 'the worker cannot be started'));
       }
       signal?.addEventListener('abort', () => reject(signal.reason), { once: true });
       if (signal?.aborted) reject(signal.reason);
-      worker.postMessage({ voxels, dims, options: rest });
+      worker.postMessage({ engine, voxels, dims, options: rest, every: preview ? previewInterval : undefined });
     });
   } finally {
     worker.terminate();  // a cancelled one in the middle of its work

@@ -39,7 +39,18 @@ export class CanvasView {
     this.height = 0;
     this.ratio = 1;
     this.asked = false;
-    new ResizeObserver(() => this.#resize()).observe(this.root);
+    this.observer = new ResizeObserver(() => this.#resize());
+    this.observer.observe(this.root);
+  }
+
+  // Another image comes: browsers have few contexts of WebGL to give.
+  dispose() {
+    this.observer.disconnect();
+    this.width = 0;
+    this.root.remove();
+    this.renderWindow.removeView(this.gl);
+    this.gl.delete();
+    this.renderWindow.delete();
   }
 
   toggleAlone() {

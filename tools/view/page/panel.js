@@ -1,17 +1,17 @@
 // The column beside the views: what is at the cursor, surfaces, window and level, distances, notes.
-import { changed, millimetres, setTool, state, text, valueOf } from './state.js';
+import { changed, millimetres, state, text, valueOf } from './state.js';
 import { length, sub } from './vectors.js';
 
 const MANY = 3;
 const byId = (id) => document.getElementById(id);
 
-function made(tag, properties = {}, ...children) {
+export function made(tag, properties = {}, ...children) {
   const element = Object.assign(document.createElement(tag), properties);
   element.append(...children);
   return element;
 }
-const row = (...children) => made('div', { className: 'row' }, ...children);
-const label = (words) => made('span', { className: 'label', textContent: words });
+export const row = (...children) => made('div', { className: 'row' }, ...children);
+export const label = (words) => made('span', { className: 'label', textContent: words });
 
 // ---- the point
 
@@ -180,19 +180,18 @@ function showSurfaces() {
   });
   const rows = state.surfaces.map(surfaceRows);
   byId('surfaces').replaceChildren(...(rows.length > MANY ? [row(...both)] : []), ...rows);
+  byId('surface-panel').hidden = rows.length === 0;
 }
 
-export function buildPanel(told, presets) {
+// notes: lines of text. Returns what is to be called with what has changed.
+export function buildPanel(notes, presets) {
   const spacing = state.image.spacing.map((x) => Number(x.toPrecision(4))).join(' × ');
-  const notes = [`${state.image.dims.join(' × ')} voxels of ${spacing} mm`, ...told.notes];
-  byId('notes').replaceChildren(...notes.map((note) => made('li', { textContent: note })));
+  const all = [`${state.image.dims.join(' × ')} voxels of ${spacing} mm`, ...notes];
+  byId('notes').replaceChildren(...all.map((note) => made('li', { textContent: note })));
   showSurfaces();
-  byId('surface-panel').hidden = state.surfaces.length === 0;
   const showWindow = imageRows(presets);
-  for (const button of document.querySelectorAll('[data-tool]')) {
-    button.addEventListener('click', () => setTool(button.dataset.tool));
-  }
   return (what) => {
+    if (what.has('list')) showSurfaces();
     if (what.has('cursor')) showPoint();
     if (what.has('image')) showWindow();
     if (what.has('distances') || what.has('tool')) showDistances();

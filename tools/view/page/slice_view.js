@@ -47,7 +47,7 @@ export class SliceView extends CanvasView {
     this.actor = sliceActor(imageData, plane);
     this.renderer.addActor(this.actor);
     this.renderer.getActiveCamera().setParallelProjection(true);
-    this.paths = new Map();  // of contours, by surface, while the slice and the looks are the same
+    this.paths = new WeakMap();  // of contours, by surface, while the slice and the looks are the same
     this.centre = null;  // in mm along u and v; none until there is room
     dragged(this);
     this.root.addEventListener('keydown', (event) => {

@@ -80,8 +80,7 @@ export class SpaceView extends CanvasView {
     super(parent, 'space', '3D');
     this.slices = state.frame.planes.map((plane) => sliceActor(imageData, plane));
     for (const slice of this.slices) this.renderer.addActor(slice);
-    this.surfaces = state.surfaces.map((surface) => new SurfaceActor(surface));
-    for (const { actor } of this.surfaces) this.renderer.addActor(actor);
+    this.surfaces = [];
     this.interactor = vtkRenderWindowInteractor.newInstance();
     this.interactor.setView(this.gl);
     this.interactor.initialize();
@@ -134,6 +133,11 @@ export class SpaceView extends CanvasView {
     return { x: this.width / 2 + dot(from, right) * scale, y: this.height / 2 - dot(from, up) * scale, near: scale > 0 };
   }
 
+  dispose() {
+    this.interactor.unbindEvents();
+    super.dispose();
+  }
+
   // From the front, the left and a little above, as anatomy is drawn.
   reset() {
     const camera = this.renderer.getActiveCamera();
@@ -147,7 +151,21 @@ export class SpaceView extends CanvasView {
     this.ask();
   }
   resized() { if (!this.fitted) this.reset(); }
+  // Actors of surfaces that have gone are dropped, others made.
+  #follow() {
+    const known = new Map(this.surfaces.map((actor) => [actor.surface, actor]));
+    for (const { surface, actor } of this.surfaces) {
+      if (!state.surfaces.includes(surface)) this.renderer.removeActor(actor);
+    }
+    this.surfaces = state.surfaces.map((surface) => {
+      if (known.has(surface)) return known.get(surface);
+      const made = new SurfaceActor(surface);
+      this.renderer.addActor(made.actor);
+      return made;
+    });
+  }
   update() {
+    this.#follow();
     for (const surface of this.surfaces) surface.update();
     for (const slice of this.slices) slice.setVisibility(state.slicesInSpace);
   }

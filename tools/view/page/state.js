@@ -13,9 +13,10 @@ export const state = {
   distances: [],      // [place, place], the last one perhaps of one place alone
 };
 
-const listeners = [];
+let listeners = [];
 export const listen = (listener) => { listeners.push(listener); };
-// what: cursor, slice images, surfaces, distances, tool, theme.
+export const nobodyListens = () => { listeners = []; };
+// what: cursor, image (how slices look), surfaces (how they look), list (of surfaces), distances, tool, theme.
 export function changed(...what) {
   for (const listener of listeners) listener(new Set(what));
 }

@@ -44,15 +44,12 @@ function boxOf(points) {
 }
 
 export class Surface {
-  // planes: of the frame. axes: points as all x, all y, all z.
-  constructor(number, told, axes, corners, arrays, planes) {
+  // planes: of the frame. points: places, x, y, z of each vertex.
+  constructor(number, told, points, corners, arrays, planes) {
     this.name = told.name;
     this.faces = told.faces;
     this.vertices = told.vertices;
-    this.points = new Float32Array(axes.length);
-    for (let k = 0; k < 3; ++k) {
-      for (let i = 0; i < told.vertices; ++i) this.points[3 * i + k] = axes[k * told.vertices + i];
-    }
+    this.points = points;
     this.corners = corners;
     this.normals = normalsOf(this.points, corners);
     this.box = boxOf(this.points);

@@ -8,7 +8,7 @@ function decoded(text) {
 }
 
 // The bytes of array `number`; its text is dropped from the page.
-async function unpackedBytes(number) {
+export async function unpackedBytes(number) {
   const element = document.getElementById(`array-${number}`);
   const bytes = decoded(element.textContent);
   element.remove();

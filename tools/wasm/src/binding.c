@@ -18,6 +18,8 @@ IMPORT(log) extern void js_log(int level, const char* line);
 static plc_context* context;
 static plc_parameters parameters;
 static plc_image image;
+static plc_run* run;
+static plc_run_state run_state;
 static plc_surface* surface;
 static char message[1024];
 
@@ -96,12 +98,9 @@ int EXPORT(choose_parameter)(const char* name, const char* word) {
   return 1;
 }
 
-/* geometry: spacing, origin and direction of plc_image, 15 doubles. */
-int EXPORT(extract)(int type, const void* voxels, int width, int height, int depth,
-                    const double* geometry) {
-  plc_extras extras;
-  plc_extras_defaults(&extras);
-  extras.progress = on_progress;
+/* Before extract or run_start. geometry: spacing, origin and direction of plc_image, 15 doubles. */
+void EXPORT(set_image)(int type, const void* voxels, int width, int height, int depth,
+                       const double* geometry) {
   image.type = (plc_voxel_type)type;
   image.voxels = voxels;
   image.dims[0] = width;
@@ -110,9 +109,44 @@ int EXPORT(extract)(int type, const void* voxels, int width, int height, int dep
   memcpy(image.spacing, geometry, sizeof image.spacing);
   memcpy(image.origin, geometry + 3, sizeof image.origin);
   memcpy(image.direction, geometry + 6, sizeof image.direction);
+}
+
+static plc_extras listening(void) {
+  plc_extras extras;
+  plc_extras_defaults(&extras);
+  extras.progress = on_progress;
+  return extras;
+}
+
+int EXPORT(extract)(void) {
+  const plc_extras extras = listening();
+  return told(plc_extract(context, &image, &parameters, &extras, &surface));
+}
+
+/* The same in iterations, with more memory: run_start, then run_advance until run_done. Between any
+ * two, and at the end, take_surface makes the surface as it is what is asked for below. */
+int EXPORT(run_start)(void) {
+  const plc_extras extras = listening();
+  plc_volume* volume = NULL;
+  plc_pyramid* pyramid = NULL;
+  int status = told(plc_volume_create(context, &image, PLC_BORROW, &volume));
+  if (status == PLC_OK) status = told(plc_pyramid_create(context, volume, &parameters, &pyramid));
+  if (status == PLC_OK) status = told(plc_run_create(context, pyramid, &parameters, &extras, &run));
+  plc_pyramid_destroy(pyramid);
+  plc_volume_destroy(volume);
+  plc_run_state_defaults(&run_state);
+  return status;
+}
+int EXPORT(run_advance)(void) {
+  return told(plc_run_advance(context, run, PLC_ONE_ITERATION, &run_state));
+}
+int EXPORT(run_done)(void) {
+  return run_state.done;
+}
+int EXPORT(take_surface)(void) {
   plc_surface_destroy(surface);
   surface = NULL;
-  return told(plc_extract(context, &image, &parameters, &extras, &surface));
+  return told(plc_run_surface(context, run, &surface));
 }
 
 double EXPORT(vertex_count)(void) {
@@ -120,6 +154,21 @@ double EXPORT(vertex_count)(void) {
 }
 double EXPORT(face_count)(void) {
   return (double)plc_surface_face_count(surface);
+}
+int EXPORT(converged)(void) {
+  return plc_surface_converged(surface);
+}
+/* values: components, Euler's number, genus, area, volume. */
+int EXPORT(measure)(int space, double* values) {
+  plc_measures measures;
+  plc_measures_defaults(&measures);
+  const int status = told(plc_surface_measure(context, surface, (plc_space)space, &measures));
+  values[0] = (double)measures.components;
+  values[1] = (double)measures.euler;
+  values[2] = (double)measures.genus;
+  values[3] = measures.area;
+  values[4] = measures.volume;
+  return status;
 }
 unsigned EXPORT(hash_high)(void) {
   return (unsigned)(plc_surface_hash(surface) >> 32);
