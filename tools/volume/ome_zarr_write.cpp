@@ -240,12 +240,13 @@ void OmeZarrWriter::commit() {
   write_text(".zattrs", image_metadata(image_).dump(2) + '\n');
   write_text(".zgroup", "{\"zarr_format\": 2}\n");
   if (syncfs(lock_) != 0 && errno != ENOSYS) fail(errno);
-  // A target that is there changes places with the new folder, and goes with it.
   if (std::rename(folder_.c_str(), path_.c_str()) == 0) {
     folder_.clear();
-  } else if (errno != ENOTEMPTY && errno != EEXIST) {
-    fail(errno);
-  } else if (renameat2(AT_FDCWD, folder_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) != 0) {
+    return;
+  }
+  if (errno != ENOTEMPTY && errno != EEXIST) fail(errno);
+  // A target that is there changes places with the new folder, and goes with it.
+  if (renameat2(AT_FDCWD, folder_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) != 0) {
     fail(errno);
   }
 }
