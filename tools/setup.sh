@@ -7,13 +7,14 @@
 set -euo pipefail
 
 build=(g++ cmake make libhwy-dev libtbb-dev libmimalloc2.0 libinsighttoolkit5-dev libarchive-dev
-  libexpat1-dev zlib1g-dev libembree-dev libpng-dev libcli11-dev nlohmann-json3-dev)
+  libexpat1-dev zlib1g-dev libembree-dev libpng-dev libcli11-dev nlohmann-json3-dev
+  libblosc-dev libzstd-dev)
 test=(catch2 invesalius-examples jq mricron-data pkg-config python3)
 python=(python3-dev pybind11-dev python3-numpy python3-nibabel python3-pip python3-venv python3-setuptools
   python3-wheel python3-pytest python3-mypy)
 python+=(python3-nbconvert python3-ipykernel python3-meshio)  # the tutorial; one that takes meshes
 demo=(invesalius-examples)
-test+=(python3-nibabel gmsh tetgen man-db)  # that read what the command writes
+test+=(python3-nibabel python3-zarr gmsh tetgen man-db)  # that read what the command writes
 lint=(clang-format clang-tidy)
 compilers=(clang)
 perf=(jq gnuplot-nox invesalius-examples libbenchmark-dev)

@@ -5,6 +5,7 @@ inside may be damaged before it is packed.
 """
 import gzip
 import io
+import json
 import struct
 import tarfile
 import zlib
@@ -241,6 +242,26 @@ def inv3():
     return out.getvalue()
 
 
+# ---- Zarr
+
+def zarr_2(compressor):
+    return json.dumps({'zarr_format': 2, 'shape': [NZ, NY, NX], 'chunks': [NZ, NY, NX], 'dtype': '<i2',
+                       'fill_value': 0, 'order': 'C', 'filters': None, 'compressor': compressor}).encode()
+
+
+def zarr_3():
+    """A shard of one chunk."""
+    def named(name, **configuration):
+        return {'name': name, 'configuration': configuration}
+    little = named('bytes', endian='little')
+    shard = named('sharding_indexed', chunk_shape=[NZ, NY, NX], codecs=[little, named('gzip', level=6)],
+                  index_codecs=[little])
+    return json.dumps({'zarr_format': 3, 'node_type': 'array', 'shape': [NZ, NY, NX],
+                       'data_type': 'int16', 'fill_value': 0, 'codecs': [shard],
+                       'chunk_grid': named('regular', chunk_shape=[NZ, NY, NX]),
+                       'chunk_key_encoding': named('default', separator='.')}).encode()
+
+
 def volumes():
     """Name of a case, its files and the path that the command is given."""
     shorts, pages8, pages16 = raw('h'), slices('B'), slices('h')
@@ -284,6 +305,13 @@ def volumes():
          'a.mhd'),
         ('list.mhd', {'a.mhd': meta_header('MET_SHORT', 'LIST') + names, **raws}, 'a.mhd'),
         ('tiffs', {f't/{z}.tif': tiff([page], 8) for z, page in enumerate(pages8)}, 't')]
+    packed = gzipped(shorts)
+    many += [
+        ('plain.zarr', {'z/.zarray': zarr_2(None), 'z/0.0.0': shorts}, 'z'),
+        ('zlib.zarr', {'z/.zarray': zarr_2({'id': 'zlib', 'level': 6}),
+                       'z/0.0.0': Packed(shorts, zlib.compress)}, 'z'),
+        ('shard.zarr', {'z/zarr.json': zarr_3(),
+                        'z/c.0.0.0': packed + struct.pack('<2Q', 0, len(packed))}, 'z')]
     for syntax in ('explicit', 'implicit', 'rle'):
         files = {f'd/{z}.dcm': dicom([page], z, syntax) for z, page in enumerate(pages16)}
         many.append((f'dicom-{syntax}', files, 'd'))

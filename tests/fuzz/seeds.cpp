@@ -9,6 +9,7 @@
 #include "tests/samples/sample_files.h"
 #include "tests/samples/sample_meshes.h"
 #include "tests/samples/sample_volumes.h"
+#include "tests/samples/sample_zarr.h"
 #include "tools/mesh/mesh_io.h"
 
 namespace {
@@ -175,6 +176,35 @@ void put_volumes(const Seeds& seeds) {
                   kI16));
 }
 
+std::string parts_of(const samples::ZarrMemory& store) {
+  std::string text;
+  for (const auto& [key, value] : store.values) text += key + "\n----\n" + value + "\n----\n";
+  return text;
+}
+
+void put_zarr(const Seeds& seeds) {
+  const samples::ZarrMemory sharded = samples::sharded_zarr(
+      {9, 5, 3}, [](int64_t x, int64_t y, int64_t z) { return static_cast<uint16_t>(x + y + z); });
+  seeds.put("volume_zarr", "sharded", parts_of(sharded));
+  const std::string voxels(48, 'a');
+  const auto packed = plc::tools::zarr_compress("", std::as_bytes(std::span(voxels)), 2);
+  samples::ZarrMemory old;
+  old.values[".zattrs"] =
+      R"({"multiscales": [{"axes": ["z", "y", "x"], "datasets": [{"path": "0",)"
+      R"("coordinateTransformations": [{"type": "scale", "scale": [1, 2, 3]}]}]}]})";
+  for (const std::string id : {"blosc", "zstd", "zlib"}) {
+    old.values["0/.zarray"] =
+        R"({"zarr_format": 2, "shape": [4, 2, 3], "chunks": [4, 2, 3], "dtype": ">i2",
+        "fill_value": -1, "order": "F", "filters": [], "compressor": {"id": ")" +
+        id + "\"}}";
+    old.values["0/0.0.0"] =
+        id == "blosc"  ? std::string(reinterpret_cast<const char*>(packed.data()), packed.size())
+        : id == "zstd" ? samples::zstd_frame(voxels)
+                       : samples::deflated(voxels, false);
+    seeds.put("volume_zarr", id, parts_of(old));
+  }
+}
+
 void put_texts(const Seeds& seeds) {
   seeds.put("attach", "places",
             "# places\nattach 1 2.5 -3 4\nattach 1 2 3 4 50\npin 0 0 0 1e3 # still\n");
@@ -219,6 +249,7 @@ int main(int argc, char** argv) {
   put_packed_meshes(seeds);
   put_inv3(seeds);
   put_volumes(seeds);
+  put_zarr(seeds);
   put_texts(seeds);
   put_random(seeds);
   return 0;

@@ -40,6 +40,9 @@ void volume_meta(Bytes input);
 void volume_nrrd(Bytes input);
 void volume_tiff(Bytes input);
 
+// A Zarr hierarchy, value by value: see sample_zarr.h's ZarrMemory.
+void volume_zarr(Bytes values);
+
 // Words of a command line of `pellicle extract`, separated by zeros.
 void options(Bytes words);
 
@@ -67,6 +70,7 @@ inline constexpr Target kTargets[] = {
     {"volume_meta", volume_meta},
     {"volume_nrrd", volume_nrrd},
     {"volume_tiff", volume_tiff},
+    {"volume_zarr", volume_zarr},
     {"options", options},
 #endif
 };

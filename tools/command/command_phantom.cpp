@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 
 #include "tools/command/option_values.h"
+#include "tools/file/path_suffix.h"
+#include "tools/volume/ome_zarr_write.h"
 
 namespace plc::tools {
 
@@ -44,7 +47,7 @@ class Declarations {
         });
     command_
         .add_option("-o,--output", arguments_.output,
-                    "Volume to write, by suffix: .nrrd, .mha, .mhd")
+                    "Volume to write, by suffix: .nrrd, .mha, .mhd, .ome.zarr (packed)")
         ->required()
         ->type_name("FILE");
   }
@@ -102,6 +105,18 @@ void add_phantom_options(CLI::App& command, PhantomArguments& arguments) {
 }
 
 int run_phantom(const PhantomArguments& arguments) {
+  if (path_suffix(arguments.output) == ".zarr") {
+    // Planes by planes, whatever its size.
+    PhantomOptions options = arguments.options;
+    std::optional<OmeZarrWriter> writer;
+    options.take_planes = [&](const plc_image& whole, std::span<const std::byte> planes) {
+      if (!writer) writer.emplace(arguments.output, whole);
+      writer->add(planes);
+    };
+    make_phantom(arguments.kind, options);
+    writer->commit();
+    return 0;
+  }
   const LoadedVolume volume = make_phantom(arguments.kind, arguments.options);
   write_volume(arguments.output, volume.image);
   return 0;

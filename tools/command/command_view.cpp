@@ -90,7 +90,7 @@ ViewedSurface read_surface(const std::string& path, const std::string& name,
 void add_view_options(CLI::App& command, ViewOptions& options) {
   command
       .add_option("IMAGE", options.image,
-                  "NIfTI, NRRD, MetaImage, a DICOM directory, a TIFF stack or an .inv3")
+                  "NIfTI, NRRD, MetaImage, OME-Zarr, a DICOM directory, a TIFF stack or an .inv3")
       ->required()
       ->type_name("");
   command

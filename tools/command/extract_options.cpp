@@ -138,9 +138,10 @@ class Declarations {
   void files() {
     group_ = "Files";
     command_
-        .add_option("INPUT", options_.input,
-                    "NIfTI, NRRD, MetaImage, TIFF stack, InVesalius .inv3, or a directory of "
-                    "DICOM slices")
+        .add_option(
+            "INPUT", options_.input,
+            "NIfTI, NRRD, MetaImage, OME-Zarr, TIFF stack, InVesalius .inv3, or a directory of "
+            "DICOM slices")
         ->required()
         ->type_name("");
     file("-o,--output", options_.output,

@@ -63,7 +63,8 @@ Canvas::Canvas(const char* name_of, const PhantomOptions& options, const Default
     : noise(options.noise.value_or(defaults.noise)),
       seed(options.seed),
       type(options.type.value_or(defaults.type)),
-      name(name_of) {
+      name(name_of),
+      take_planes_(options.take_planes) {
   for (int axis = 0; axis < 3; ++axis) {
     size[axis] = options.size[axis].value_or(defaults.size[axis]);
     spacing[axis] = options.spacing[axis];
@@ -93,16 +94,31 @@ std::vector<double> Canvas::field(double value) const {
 }
 
 LoadedVolume Canvas::made(const std::function<double(size_t)>& next) const {
-  LoadedVolume result = make_volume(name, type, size);
+  // Of a volume that is handed over in parts, one part: as few planes as make some megabytes.
+  constexpr int64_t kPart = int64_t{1} << 24;
+  const int64_t plane = size[0] * size[1];
+  const int64_t planes = take_planes_ ? std::clamp<int64_t>(kPart / plane, 2, size[2]) : size[2];
+  const int64_t part[3] = {size[0], size[1], planes};
+  LoadedVolume result = make_volume(name, type, part);
   std::copy(spacing, spacing + 3, result.image.spacing);
+  std::copy(size, size + 3, result.image.dims);
   const double scale = full_scale(type);
   const size_t bytes = voxel_size(type);
-  const size_t count = result.bytes.size() / bytes;
+  const auto count = static_cast<size_t>(plane * size[2]);
+  const size_t room = result.bytes.size() / bytes;
   Random random(seed ^ 0x6e6f697365U);  // apart from the shapes' numbers
   for (size_t i = 0; i < count; ++i) {
     const double value = next(i);
     const double added = noise > 0 ? noise * random.normal() : 0;
-    store(type, scale * (value + added), result.bytes.data() + i * bytes);
+    const size_t at = i % room;
+    store(type, scale * (value + added), result.bytes.data() + at * bytes);
+    if (take_planes_ && (at + 1 == room || i + 1 == count)) {
+      take_planes_(result.image, {result.bytes.data(), (at + 1) * bytes});
+    }
+  }
+  if (take_planes_) {
+    result.bytes = {};
+    result.image.voxels = nullptr;
   }
   return result;
 }

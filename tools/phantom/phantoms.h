@@ -1,8 +1,11 @@
 // The paper's test images and more, computed. The same bits on every machine: only + - * / and
 // square roots of doubles, and a random generator of our own.
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +22,10 @@ struct PhantomOptions {
   std::optional<plc_voxel_type> type;  // see full_scale()
   std::optional<int> count;            // blobs, labels: how many; vessels: trees; 1 .. 10000
   std::optional<int> depth;            // sierpinski: of recursion; vessels: of branching; 1 .. 12
+  // Where it is set, it is given the voxels, some planes at a time from the first on, and the volume
+  // that is returned has none: for volumes that no memory holds. Of vessels and sierpinski a value
+  // per voxel is held all the same. whole: what the volume is, without its voxels.
+  std::function<void(const plc_image& whole, std::span<const std::byte> planes)> take_planes;
 };
 
 // The voxel value that stands for 1: 255 in u8, 1000 in the other integer types, 1 in f32.

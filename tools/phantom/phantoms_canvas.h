@@ -41,6 +41,7 @@ struct Canvas {
   std::string name;
 
  private:
+  decltype(PhantomOptions::take_planes) take_planes_;
   // Of next(voxel), called for every voxel, x fastest.
   LoadedVolume made(const std::function<double(size_t)>& next) const;
 };

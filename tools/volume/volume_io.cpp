@@ -14,6 +14,7 @@
 #include "tools/file/memory.h"
 #include "tools/file/path_suffix.h"
 #include "tools/volume/inv3.h"
+#include "tools/volume/ome_zarr.h"
 #include "tools/volume/volume_io_formats.h"
 #include "tools/volume/volume_io_memory.h"
 
@@ -168,7 +169,9 @@ LoadedVolume read_volume(const std::string& path, NiftiFrame frame) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) throw Failure{path + ": there is no such file"};
-  if (std::filesystem::is_directory(status)) return read_folder(path);
+  if (std::filesystem::is_directory(status)) {
+    return is_zarr_folder(path) ? read_ome_zarr(path) : read_folder(path);
+  }
   if (!std::filesystem::is_regular_file(status)) throw Failure{path + ": is not a file"};
   if (std::filesystem::file_size(path, error) == 0) throw Failure{path + ": is empty"};
   const std::string suffix = path_suffix(path);
@@ -177,7 +180,7 @@ LoadedVolume read_volume(const std::string& path, NiftiFrame frame) {
   const auto format = formats.find(suffix);
   if (format == formats.end()) {
     throw Failure{path + ": unknown format (known are .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, " +
-                  ".tif, .tiff, .dcm, .inv3 and folders of DICOM or TIFF files)"};
+                  ".tif, .tiff, .dcm, .inv3 and folders of Zarr arrays, DICOM or TIFF files)"};
   }
   return read_itk_volume(path, format->second);
 }

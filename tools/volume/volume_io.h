@@ -1,4 +1,4 @@
-// Reading of volumes: NIfTI, ITK's formats and InVesalius projects.
+// Reading of volumes: NIfTI, OME-Zarr, ITK's formats and InVesalius projects.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -17,8 +17,8 @@ struct LoadedVolume {
   std::vector<std::string> warnings;  // what a user should know of it: lines without their ends
 };
 
-// NIfTI, NRRD, MetaImage, a DICOM directory, a TIFF stack, or an InVesalius .inv3. frame: of NIfTI
-// alone. Throws Failure.
+// NIfTI, NRRD, MetaImage, a folder of OME-Zarr, a DICOM directory, a TIFF stack, or an InVesalius
+// .inv3. frame: of NIfTI alone. Throws Failure.
 LoadedVolume read_volume(const std::string& path, NiftiFrame frame = NiftiFrame::kAuto);
 
 // The same in a child process, where libraries that abort or do not end harm nobody: what the
@@ -28,7 +28,7 @@ LoadedVolume read_volume_apart(const std::string& path, NiftiFrame frame = Nifti
 // Its warnings to stderr, a line each.
 void print_warnings(const LoadedVolume& volume);
 
-// .nrrd, .mha or .mhd by suffix; atomically. Throws Failure.
+// .nrrd, .mha, .mhd or .zarr by suffix; atomically. Throws Failure.
 void write_volume(const std::string& path, const plc_image& image);
 
 }  // namespace plc::tools

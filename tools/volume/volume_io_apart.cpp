@@ -9,6 +9,7 @@
 #include "tools/file/apart.h"
 #include "tools/file/checked_sizes.h"
 #include "tools/file/failure.h"
+#include "tools/volume/ome_zarr.h"
 #include "tools/volume/volume_io.h"
 #include "tools/volume/volume_io_memory.h"
 
@@ -24,8 +25,10 @@ uint64_t bytes_on_disk(const std::string& path) {
     return error ? 0 : size;
   }
   uint64_t sum = 0;
-  for (std::filesystem::directory_iterator i(path, error), end; !error && i != end;
+  const bool chunks = is_zarr_folder(path);  // in folders of their own
+  for (std::filesystem::recursive_directory_iterator i(path, error), end; !error && i != end;
        i.increment(error)) {
+    if (!chunks) i.disable_recursion_pending();
     std::error_code none;
     const uintmax_t size = i->file_size(none);
     if (!none) sum = plus(sum, size);

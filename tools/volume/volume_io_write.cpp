@@ -1,4 +1,4 @@
-// write_volume(): NRRD and MetaImage, uncompressed, little endian.
+// write_volume(): NRRD and MetaImage, uncompressed, little endian, and OME-Zarr, packed.
 #include <bit>
 #include <charconv>
 #include <filesystem>
@@ -6,6 +6,7 @@
 #include "tools/file/atomic_file.h"
 #include "tools/file/failure.h"
 #include "tools/file/path_suffix.h"
+#include "tools/volume/ome_zarr_write.h"
 #include "tools/volume/volume_io.h"
 #include "tools/volume/volume_io_memory.h"
 
@@ -82,8 +83,12 @@ void write_volume(const std::string& path, const plc_image& image) {
     const std::filesystem::path raw = std::filesystem::path(path).replace_extension(".raw");
     files.add(raw.string()).write(image.voxels, bytes);
     files.add(path).write(meta_header(image, raw.filename().string()));
+  } else if (suffix == ".zarr") {
+    OmeZarrWriter writer(path, image);
+    writer.add({static_cast<const std::byte*>(image.voxels), bytes});
+    writer.commit();
   } else {
-    throw Failure{path + ": volumes are written as .nrrd, .mha or .mhd"};
+    throw Failure{path + ": volumes are written as .nrrd, .mha, .mhd or .ome.zarr"};
   }
   files.commit();
 }
