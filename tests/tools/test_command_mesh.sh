@@ -38,8 +38,17 @@ refused "info of no known kind" "words.txt" "$pellicle" info words.txt
 refused "info with no frame" "nifti-frame" "$pellicle" info blobs.nrrd --nifti-frame mni
 
 otsu=$(info .otsu blobs.nrrd)
-p90=$(info '.percentiles | has("p95")' blobs.nrrd)
-is "info tells percentiles" "$p90" true
+"$pellicle" info --json blobs.nrrd >info.json
+python3 - info.json blobs.nrrd <<'END' || fails "info tells other percentiles than those of the voxels"
+import json, struct, sys
+data = open(sys.argv[2], 'rb').read().split(b'\n\n', 1)[1]
+values = sorted(struct.unpack(f'<{40 ** 3}h', data))
+told = json.load(open(sys.argv[1]))['percentiles']
+# The least value that so many percent of the voxels do not exceed.
+true = {f'p{p}': values[max(0, -(-len(values) * p // 100) - 1)] for p in (1, 5, 25, 50, 75, 95, 99)}
+if told != true: print(told, true)
+sys.exit(told != true)
+END
 
 # ---- --iso otsu and percentiles
 works "--iso otsu" 0 "$pellicle" extract blobs.nrrd --iso otsu -o all.ply --report all.json
@@ -136,7 +145,19 @@ for keep in 0 -1 2.5 smallest mm3 -3mm3 5mm; do
   refused "extract --keep $keep" "keep" "$pellicle" extract blobs.nrrd --iso 600 --keep=$keep -o out/a.ply
 done
 refused "--keep of none" "none of the" "$pellicle" extract blobs.nrrd --iso 600 --keep 1e9mm3 --quiet -o out/a.ply
-refused "mesh --keep of none" "leaves none" "$pellicle" mesh parts.ply --keep 1e9mm3 -o out/a.ply
+works "--keep all" 0 "$pellicle" mesh parts.ply --keep all -o out/all.ply
+cmp -s parts.ply out/all.ply || fails "mesh --keep all is not all"
+works "extract --keep all" 0 "$pellicle" extract blobs.nrrd --iso 600 --keep all --quiet -o out/all.ply
+cmp -s parts.ply out/all.ply || fails "extract --keep all is not all"
+works "a start with all bodies" 0 "$pellicle" extract blobs.nrrd --iso 600,590 --quiet -o out/f.ply --report out/f.json
+is "a start from a file" "$(json out/f-590.json .parameters.init)" "mesh=out/f-600.ply"
+works "a start of which the file has less" 0 "$pellicle" extract blobs.nrrd --iso 600,590 --keep largest --quiet \
+  -o out/k.ply --report out/k.json
+is "a start of which the file has less" "$(json out/k-590.json .parameters.init)" "surface of 600 before --keep"
+is "the first has none" "$(json out/k-600.json .parameters.init)" bubble
+is "it starts from all bodies" "$(json out/k-590.json .hash)" "$(json out/f-590.json .hash)"
+left_over >/dev/null
+refused "mesh --keep of none" "--keep leaves none" "$pellicle" mesh parts.ply --keep 1e9mm3 -o out/a.ply
 refused "--keep of an open mesh" "open.off: is not a valid" "$pellicle" mesh open.off --keep largest -o out/a.ply
 
 # ---- mesh: a ball in a shell beside another ball, of cubes
@@ -169,7 +190,11 @@ works "crop and keep" 0 "$pellicle" mesh nested.ply --crop 0,11,0,11,0,11 --keep
 near "crop and keep" "$(info .volume out/two.vtp)" 944 1e-6
 is "values stay" "$(info '.values | join(",")' out/two.vtp)" Label
 left_over >/dev/null
-refused "crop to nothing" "leaves none" "$pellicle" mesh nested.ply --crop 100,101,0,1,0,1 -o out/a.ply
+refused "crop to what is too small" "--keep leaves none" "$pellicle" mesh nested.ply --crop 0,11,0,11,0,11 \
+  --keep 1e6mm3 -o out/a.ply
+refused "crop to nothing, and keep" "--crop leaves none" "$pellicle" mesh nested.ply --crop 100,101,0,1,0,1 \
+  --keep largest -o out/a.ply
+refused "crop to nothing" "--crop leaves none" "$pellicle" mesh nested.ply --crop 100,101,0,1,0,1 -o out/a.ply
 refused "crop of no box" "crop" "$pellicle" mesh nested.ply --crop 5,4,0,1,0,1 -o out/a.ply
 refused "a merge that would meet" "outer.off and across.off: not merged.*meet" merge outer.off across.off -o out/a.ply
 refused "a merge of one in another" "not merged.*inside" merge outer.off core.off -o out/a.ply
@@ -198,7 +223,18 @@ works "a start in another space" 0 "$pellicle" extract blobs.nrrd --iso "$otsu" 
 near "a start in another space" "$(info .volume out/start.ply)" "$(info .volume all.ply)" 30
 left_over >/dev/null
 refused "voxels without an image" "only its image" "$pellicle" mesh all.ply --space voxel -o out/a.ply
-refused "a distance from mm to voxels" "only its image" "$pellicle" measure all.ply --distance voxels.ply
+refused "a distance from mm to voxels" "voxels.ply: is in voxel.*only its image" "$pellicle" measure all.ply --distance voxels.ply
+# A mesh that names no space is in LPS, whichever of the two it is.
+works "no named space" 0 "$pellicle" mesh all.ply -o plain.off
+works "a distance from no named space" 0 "$pellicle" measure plain.off --distance ras.ply --json out/d.json
+near "a distance from no named space" "$(json out/d.json .distance.hausdorff)" 0 1e-3
+works "a distance to no named space" 0 "$pellicle" measure ras.ply --distance plain.off --json out/d.json
+near "a distance to no named space" "$(json out/d.json .distance.hausdorff)" 0 1e-3
+left_over >/dev/null
+refused "a distance from no named space to voxels" "voxels.ply: is in voxel.*only its image" \
+  "$pellicle" measure plain.off --distance voxels.ply
+refused "a distance from voxels to no named space" "plain.off: names no space.*LPS" \
+  "$pellicle" measure voxels.ply --distance plain.off
 works "voxels" 0 "$pellicle" mesh all.ply --space voxel --image blobs.nrrd -o out/voxel.ply
 valid out/voxel.ply
 near "voxels" "$(info '.bounds.low[0]' out/voxel.ply)" "$(info '(.bounds.low[0] - 10) / 0.5' all.ply)" 1e-4
@@ -248,6 +284,15 @@ is "fine" "$(json out/f.json .parameters.mesh)" adaptive
 works "an option on top" 0 "$pellicle" extract blobs.nrrd --iso 400 --mesh uniform --epsilon 1e-3 --quality fine --quiet \
   -o out/f.ply --report out/f.json
 is "an option on top, whatever stands first" "$(json out/f.json '.parameters | "\(.epsilon) \(.mesh)"')" "0.001 uniform"
+left_over >/dev/null
+preset_of() { json "out/s-$1.json" '.parameters | "\(.late_bubbles) \(.epsilon) \(.mesh)"'; }
+works "presets of structures" 0 "$pellicle" extract blobs.nrrd --quality draft --mesh adaptive --quiet -o out/s.ply \
+  --report out/s.json --structure a="--iso 400 --quality normal" --structure b="--iso 400 --quality fine" \
+  --structure c="--iso 400" --structure d="--iso 400 --quality draft --epsilon 1e-3"
+is "normal in draft" "$(preset_of a)" "true 5e-06 uniform"
+is "fine in draft" "$(preset_of b)" "true 5e-06 adaptive"
+is "no preset in draft" "$(preset_of c)" "false 0.0001 adaptive"
+is "an option on top in draft" "$(preset_of d)" "false 0.001 uniform"
 left_over >/dev/null
 refused "--quality best" "quality" "$pellicle" extract blobs.nrrd --iso 400 --quality best -o out/a.ply
 left_over >/dev/null

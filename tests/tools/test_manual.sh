@@ -16,7 +16,7 @@ fails() {
 
 commands=$("$pellicle" --help | sed -nE '/^Subcommands:/,$ s/^  ([a-z]+) .*/\1/p')
 [ "$(wc -w <<<"$commands")" -ge 7 ] || fails "--help tells no commands"
-options_of() { "$pellicle" "$1" --help | grep -oE -- '^  (-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+'; }
+options_of() { "$pellicle" $1 --help | grep -oE -- '^  (-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+'; }
 
 # ---- the manual page
 "$pellicle" --man >pellicle.1 || fails "--man"
@@ -24,14 +24,23 @@ if command -v man >/dev/null; then
   LC_ALL=C.UTF-8 MANWIDTH=200 man --warnings -l pellicle.1 2>warnings >plain || fails "man does not read the page"
   [ ! -s warnings ] || fails "man warns: $(head -3 warnings)"
   col -b <plain >text
-else
-  sed -E 's/\\f[BIR]//g; s/\\-/-/g' pellicle.1 >text
-fi
-for command in $commands; do
-  grep -qE "^ *pellicle $command " text || fails "the manual page has no pellicle $command"
-  for option in $(options_of "$command"); do
-    grep -qE -- "$option( |,|\$)" text || fails "the manual page has no $option of $command"
+  for command in $commands; do
+    grep -qE "^ *pellicle $command " text || fails "man shows no pellicle $command"
   done
+fi
+sed -E 's/\\f[BIR]//g; s/\\-/-/g' pellicle.1 >source
+described_in() {  # SECTION: the options that have an entry of their own there
+  awk -v section=".SH $1" '/^\.SH / {there = $0 == section} there && entry {print} {entry = $0 == ".TP"}' source |
+    grep -oE -- '^(-[a-z], ?)?--[a-z-]+' | grep -oE -- '--[a-z-]+'
+}
+same_options() {  # WHAT FOUND EXPECTED
+  local wrong
+  wrong=$(diff <(sort -u <<<"$2") <(sort -u <<<"$3")) || fails "$1: $(xargs <<<"$wrong")"
+}
+same_options "the manual page's options of all commands" "$(described_in OPTIONS)" "$(options_of '')"
+for command in $commands; do
+  grep -qE "^\.B pellicle $command\$" source || fails "the manual page has no pellicle $command"
+  same_options "the manual page's options of $command" "$(described_in "PELLICLE $command")" "$(options_of "$command")"
 done
 
 # ---- completion
@@ -54,7 +63,7 @@ for command in $commands; do
   same "options of $command" "$(complete_with pellicle "$command" --)" "$(options_of "$command")"
 done
 same "--space" "$(complete_with pellicle extract a.nii --space '')" "$(printf 'lps\nras\nvoxel')"
-same "--keep" "$(complete_with pellicle mesh a.ply --keep '')" largest
+same "--keep" "$(complete_with pellicle mesh a.ply --keep '')" "$(printf 'all\nlargest')"
 same "--inside b" "$(complete_with pellicle extract a.nii --inside b)" below
 same "phantoms" "$(complete_with pellicle phantom sh)" shell
 same "a file" "$(complete_with pellicle extract he)" ""

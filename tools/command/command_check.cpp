@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/command/engine_handles.h"
+#include "tools/command/rounded_text.h"
 #include "tools/mesh/mesh_io.h"
 
 namespace plc::tools {
@@ -53,18 +54,8 @@ std::string yes_no(int value) {
   return value < 0 ? "not defined" : value != 0 ? "yes" : "no";
 }
 
-std::string rounded(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 std::string count(int64_t value) {
   return std::to_string(value);
-}
-
-std::string range(double low, double high) {
-  return rounded(low) + " .. " + rounded(high);
 }
 
 std::string intersections(const plc_check& c) {
@@ -99,9 +90,9 @@ void print_table(const plc_check& c) {
       {"degenerate faces", count(c.degenerate_faces)},
       {"duplicate points", count(c.duplicate_points)},
       {"isolated vertices", count(c.isolated_vertices)},
-      {"edge lengths", range(c.edge_min, c.edge_max) + ", mean " + rounded(c.edge_mean)},
-      {"angles (degrees)", range(c.min_angle, c.max_angle)},
-      {"valences", range(c.valence_min, c.valence_max)},
+      {"edge lengths", rounded_range(c.edge_min, c.edge_max) + ", mean " + rounded(c.edge_mean)},
+      {"angles (degrees)", rounded_range(c.min_angle, c.max_angle)},
+      {"valences", rounded_range(c.valence_min, c.valence_max)},
       {"valid", yes_no(c.valid)}};
   for (const auto& [name, value] : rows) std::printf("%-29s %s\n", name, value.c_str());
 }
@@ -119,7 +110,9 @@ plc_check check_of(plc_context* context, const TriangleMesh& mesh) {
 }
 
 void add_check_options(CLI::App& command, CheckOptions& options) {
-  command.add_option("MESH", options.mesh, mesh_suffixes(false))->required()->type_name("");
+  command.add_option("MESH", options.mesh, mesh_suffixes(MeshUse::kRead))
+      ->required()
+      ->type_name("");
   command.add_flag("--json", options.json, "JSON instead of a table");
 }
 

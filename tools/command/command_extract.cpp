@@ -139,8 +139,8 @@ class Extraction {
 
   int run(size_t index) {
     ExtractJob job = jobs_[index];
-    ExtractOptions told = options_;
-    if (job.follows) follow(index, job, told);
+    start_text_.clear();
+    if (job.follows) follow(index, job);
     interrupt_.note_first();
     ProgressLine line(options_.progress);
     surface_ = evolve(context_.get(), volume_.image, job, *inputs_, options_, line, traces_[index],
@@ -150,15 +150,16 @@ class Extraction {
     if (plc_surface_face_count(surface_.get()) == 0) {
       throw Failure{"no surface is left: at this iso the object is smaller than the mesh resolves"};
     }
-    write(job, traces_[index], told);
+    write(job, traces_[index]);
     line.done();
     return 0;
   }
 
   // Figure 24: from the last surface, on the full image, where that is nearer.
-  void follow(size_t index, ExtractJob& job, ExtractOptions& told) {
+  void follow(size_t index, ExtractJob& job) {
     plc_parameters& p = job.parameters;
-    const double last = jobs_[index - 1].parameters.iso;
+    const ExtractJob& before = jobs_[index - 1];
+    const double last = before.parameters.iso;
     if (!nearer(volume_.image, last, p.iso, p.inside_below != 0)) return;
     TriangleMesh start = mesh_of(context_.get(), surface_.get(), options_.space);
     if (!doubles_) round_to_floats(start.xyz);  // as that of the file is
@@ -166,12 +167,15 @@ class Extraction {
     p.init = PLC_INIT_MESH;
     p.levels = 0;
     p.level_iso_count = 0;
-    told.init_file = jobs_[index - 1].output;
+    // It starts from all of it, of which --keep has left less in the file.
+    start_text_ = options_.keep.text.empty() ? "mesh=" + before.output
+                                             : "surface of " + text_of(last) + " before --keep";
   }
 
   // What the image has told, and what has been left out.
   void add_choices(nlohmann::ordered_json& report, const ExtractJob& job,
                    const KeptSurface& result) const {
+    if (!start_text_.empty()) report["parameters"]["init"] = start_text_;
     if (!job.iso.text.empty() && !job.iso.is_number()) report["iso_from"] = job.iso.text;
     if (result.bodies > 0) {
       report["keep"] = {
@@ -190,7 +194,7 @@ class Extraction {
   }
 
   // What is written from here on is whole; a signal waits for it.
-  void write(const ExtractJob& job, const TraceFile& trace, const ExtractOptions& told) {
+  void write(const ExtractJob& job, const TraceFile& trace) {
     interrupt_.only_note();
     const double written = now();
     KeptSurface result = kept_surface(context_.get(), surface_.get(), options_);
@@ -204,7 +208,7 @@ class Extraction {
     const Timings timings{read_, now() - written, now() - start_};
     if (!job.report.empty()) {
       auto report =
-          make_report(context_.get(), volume_.image, surface_.get(), measures, timings, told);
+          make_report(context_.get(), volume_.image, surface_.get(), measures, timings, options_);
       report["coordinates"] = precision_text(doubles_);
       add_choices(report, job, result);
       write_report(job.report, report);
@@ -238,8 +242,9 @@ class Extraction {
   ContextHandle context_;
   LoadedVolume volume_{};
   std::optional<ExtractInputs> inputs_;
-  SurfaceHandle surface_;  // the last one
-  bool doubles_ = false;   // it was written in
+  SurfaceHandle surface_;   // the last one
+  std::string start_text_;  // what it follows, as the report tells it; "": what --init says
+  bool doubles_ = false;    // it was written in
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "tools/command/command_check.h"
 #include "tools/command/engine_handles.h"
 #include "tools/command/extract_options.h"
+#include "tools/command/rounded_text.h"
 #include "tools/mesh/mesh_io.h"
 #include "tools/volume/volume_frame.h"
 #include "tools/volume/volume_io.h"
@@ -21,21 +22,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string rounded(double value) {
-  if (std::isnan(value)) return "not defined";
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
-template <typename Triple>
-std::string triple(const Triple& x) {
-  return rounded(x[0]) + ", " + rounded(x[1]) + ", " + rounded(x[2]);
-}
-
 template <typename Triple>
 std::string box(const Triple& low, const Triple& high) {
-  return triple(low) + " .. " + triple(high);
+  return rounded_triple(low) + " .. " + rounded_triple(high);
 }
 
 // ---- images ---------------------------------------------------------------------------------
@@ -128,12 +117,12 @@ void print_image(const std::string& path, const LoadedVolume& volume) {
   row("axes", axes_text(image));
   row("spacing", rounded(image.spacing[0]) + " x " + rounded(image.spacing[1]) + " x " +
                      rounded(image.spacing[2]) + " mm");
-  row("origin", triple(image.origin) + " mm (LPS)");
+  row("origin", rounded_triple(image.origin) + " mm (LPS)");
   row("bounds", "of the centres of the voxels");
   row("  lps", box(facts.lps.low, facts.lps.high) + " mm");
   row("  ras", box(facts.ras.low, facts.ras.high) + " mm");
   row("  voxel", box(Place{0, 0, 0}, Place{last(0), last(1), last(2)}));
-  row("range", rounded(facts.range.low) + " .. " + rounded(facts.range.high));
+  row("range", rounded_range(facts.range.low, facts.range.high));
   if (facts.range.not_finite > 0) {
     row("not finite", std::to_string(facts.range.not_finite) + " voxels");
   }
@@ -229,7 +218,7 @@ void print_mesh(const std::string& path, const TriangleMesh& mesh, const MeshFac
                    ", genus " + (m.genus < 0 ? "not defined" : std::to_string(m.genus)) +
                    ", area " + rounded(m.area) + ", volume " + rounded(facts.whole.volume));
   row("bounds", box(facts.whole.low, facts.whole.high));
-  row("edges", rounded(facts.check.edge_min) + " .. " + rounded(facts.check.edge_max) + ", mean " +
+  row("edges", rounded_range(facts.check.edge_min, facts.check.edge_max) + ", mean " +
                    rounded(facts.check.edge_mean));
 }
 
@@ -252,7 +241,7 @@ int run_mesh_file(const InfoOptions& options) {
 void add_info_options(CLI::App& command, InfoOptions& options) {
   command
       .add_option("FILE", options.input,
-                  "An image as extract reads it, or a mesh (" + mesh_suffixes(false) + ")")
+                  "An image as extract reads it, or a mesh (" + mesh_suffixes(MeshUse::kRead) + ")")
       ->required()
       ->type_name("");
   command

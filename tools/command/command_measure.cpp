@@ -124,9 +124,8 @@ plc_distances distances(plc_context* context, const TriangleMesh& from, const Tr
 DistanceSummary measure_distance(plc_context* context, TriangleMesh& mesh,
                                  const MeasureOptions& options) {
   TriangleMesh other = read_mesh(options.other);
-  if (const auto space = space_named(mesh.space)) {
-    bring_to(other, *space, *space, nullptr, options.other);
-  }
+  const plc_space space = space_named(mesh.space).value_or(PLC_SPACE_LPS);
+  bring_to(other, space, PLC_SPACE_LPS, nullptr, options.other);
   if (mesh.abc.empty()) throw Failure{options.mesh + ": has no faces"};
   if (other.abc.empty()) throw Failure{options.other + ": has no faces"};
   std::vector<double> distance(mesh.xyz.size() / 3);
@@ -171,7 +170,7 @@ void check_outputs(const MeasureOptions& options) {
 }  // namespace
 
 void add_measure_options(CLI::App& command, MeasureOptions& options) {
-  command.add_option("MESH", options.mesh, mesh_suffixes(false) + ", in mm")
+  command.add_option("MESH", options.mesh, mesh_suffixes(MeshUse::kRead) + ", in mm")
       ->required()
       ->type_name("");
   const auto text = [&](const std::string& name, const std::string& type,
@@ -201,7 +200,8 @@ void add_measure_options(CLI::App& command, MeasureOptions& options) {
   command
       .add_option("-o,--output", options.output,
                   "Mesh with MeanCurvature, GaussianCurvature, Geodesic and Distance at its "
-                  "vertices, NaN where there is none; .vtp, .ply, .vtk, .gii or .glb")
+                  "vertices, NaN where there is none: " +
+                      mesh_suffixes(MeshUse::kWrittenWithScalars))
       ->type_name("FILE");
   command.add_option("--json", options.json, "All numbers as JSON")->type_name("FILE");
 }

@@ -140,28 +140,33 @@ class MeshWork {
                        : "they share points")};
   }
 
+  // How many bodies are kept; Failure where `option` leaves none.
+  size_t demand_some(const std::vector<char>& kept, const std::string& option) const {
+    const auto count = std::count(kept.begin(), kept.end(), char{1});
+    if (count > 0) return static_cast<size_t>(count);
+    throw Failure{options_.output + ": not written: " + option + " leaves none of the " +
+                  std::to_string(kept.size()) + " bodies"};
+  }
+
   // What --keep and --crop leave.
   TriangleMesh part(TriangleMesh mesh) {
     if (options_.keep.text.empty() && !options_.crop) return mesh;
-    const char* option = options_.crop ? "--crop" : "--keep";
+    const bool keeps = !options_.keep.text.empty();
     if (!valid_) {
-      throw Failure{first_invalid_ + ": is not a valid surface, of which " + option +
-                    " knows no bodies; check tells why"};
+      throw Failure{first_invalid_ + ": is not a valid surface, of which " +
+                    (keeps ? "--keep" : "--crop") + " knows no bodies; check tells why"};
     }
     const Bodies bodies = bodies_of(mesh);
     std::vector<char> kept(bodies.volumes.size(), 1);
     std::vector<double> volumes = bodies.volumes;
     if (options_.crop) {
       kept = in_box(mesh, bodies, *options_.crop);
+      demand_some(kept, "--crop");
       for (size_t i = 0; i < kept.size(); ++i) volumes[i] = kept[i] != 0 ? volumes[i] : 0;
     }
     const std::vector<char> large = kept_by(options_.keep, volumes);
     for (size_t i = 0; i < kept.size(); ++i) kept[i] = kept[i] != 0 && large[i] != 0 ? 1 : 0;
-    const auto count = std::count(kept.begin(), kept.end(), char{1});
-    if (count == 0) {
-      throw Failure{options_.output + ": not written: " + option + " leaves none of the " +
-                    std::to_string(kept.size()) + " bodies"};
-    }
+    const size_t count = demand_some(kept, "--keep");
     kept_ = ", " + std::to_string(count) + " of " + std::to_string(kept.size()) + " bodies";
     return part_of(mesh, bodies, kept);
   }
@@ -201,16 +206,17 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
         ->type_name(type)
         ->default_str(fallback);
   };
-  command.add_option("MESH", options.inputs, "Mesh to read: " + mesh_suffixes(false))
+  command.add_option("MESH", options.inputs, "Mesh to read: " + mesh_suffixes(MeshUse::kRead))
       ->required()
       ->type_name("");
   command
-      .add_option("-o,--output", options.output, "Mesh to write, by suffix: " + mesh_suffixes(true))
+      .add_option("-o,--output", options.output,
+                  "Mesh to write, by suffix: " + mesh_suffixes(MeshUse::kWritten))
       ->required()
       ->type_name("FILE");
   text("--keep", kKeepType, "all",
-       "Bodies to keep, with the cavities in them: the largest, the N largest, or all of at least "
-       "this volume, in the unit of the mesh",
+       "Bodies to keep, with the cavities in them: all, the largest, the N largest, or those of at "
+       "least this volume, in the unit of the mesh",
        [&](const std::string& s) { options.keep = to_keep_rule("--keep", s); });
   text("--crop", "X0,X1,Y0,Y1,Z0,Z1", "",
        "Box, in the space that is written: bodies with a vertex in it are kept whole, the others "

@@ -16,8 +16,8 @@ struct MeshOptions {
   std::vector<std::string> inputs;
   std::string output;
   std::string image;               // "": none
-  std::optional<plc_space> from;   // of files that name no space
-  std::optional<plc_space> space;  // "": that of the first input
+  std::optional<plc_space> from;   // of files that name no space; without it LPS
+  std::optional<plc_space> space;  // without it that of the first input
   std::optional<std::array<double, 6>> crop;
   KeepRule keep;
   NiftiFrame nifti_frame = NiftiFrame::kAuto;

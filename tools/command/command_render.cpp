@@ -63,7 +63,7 @@ void check_png_path(const std::string& path) {
 }  // namespace
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
-  command.add_option("MESH", options.mesh, mesh_suffixes(false) + "; its z axis is up")
+  command.add_option("MESH", options.mesh, mesh_suffixes(MeshUse::kRead) + "; its z axis is up")
       ->required()
       ->type_name("");
   command.add_option("-o,--output", options.output, "Picture to write, .png")

@@ -8,6 +8,7 @@
 
 #include "tools/command/extract_options.h"
 #include "tools/command/option_values.h"
+#include "tools/command/rounded_text.h"
 #include "tools/file/atomic_file.h"
 #include "tools/file/failure.h"
 #include "tools/file/path_suffix.h"
@@ -22,12 +23,6 @@
 namespace plc::tools {
 
 namespace {
-
-std::string rounded(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.5g", value);
-  return text;
-}
 
 void check_page_path(const std::string& path) {
   const std::string suffix = path_suffix(path);
@@ -56,12 +51,12 @@ std::string text_of_dims(const std::array<int64_t, 3>& dims) {
 }
 
 std::string grey_text(const GreyImage& grey) {
-  std::string text = "values " + rounded(grey.window.low) + " .. " + rounded(grey.window.high) +
+  std::string text = "values " + rounded_range(grey.window.low, grey.window.high) +
                      " of the image are shown in 256 greys, steps of " +
                      rounded(grey.window.step());
   if (grey.low < grey.window.low || grey.high > grey.window.high) {
-    text += "; those beyond (it has " + rounded(grey.low) + " .. " + rounded(grey.high) +
-            ") as the nearest of them";
+    text +=
+        "; those beyond (it has " + rounded_range(grey.low, grey.high) + ") as the nearest of them";
   }
   return text;
 }
@@ -95,7 +90,7 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
       ->type_name("");
   command
       .add_option("SURFACE", options.surfaces,
-                  "Meshes: " + mesh_suffixes(false) +
+                  "Meshes: " + mesh_suffixes(MeshUse::kRead) +
                       "; values at their vertices, as pellicle measure writes them, can be shown "
                       "as colours")
       ->type_name("");

@@ -4,6 +4,8 @@
 #include <functional>
 #include <limits>
 
+#include "tools/mesh/mesh_io.h"
+
 namespace plc::tools {
 
 const Choices<plc_space> kSpaces = {
@@ -38,16 +40,25 @@ std::string names_of(const Choices<T>& choices) {
   return names;
 }
 
-// What --quality sets: see tools/README.md for what each costs.
+// What --quality sets: see tools/README.md for what each costs. Each preset sets all that any of
+// them sets, so that the one of a --structure takes the place of the one outside of it.
 using Preset = void (*)(plc_parameters& p);
 
+void normal(plc_parameters& p) {
+  plc_parameters defaults;
+  plc_parameters_defaults(&defaults);
+  p.mesh = defaults.mesh;
+  p.late_bubbles = defaults.late_bubbles;
+  p.epsilon = defaults.epsilon;
+}
 void draft(plc_parameters& p) {
-  constexpr double kSoonCalm = 1e-4;  // ten times the default
+  constexpr double kSoonCalm = 1e-4;  // twenty times the default
+  normal(p);
   p.late_bubbles = 0;
   p.epsilon = kSoonCalm;
 }
-void normal(plc_parameters&) {}
 void fine(plc_parameters& p) {
+  normal(p);
   p.mesh = PLC_MESH_ADAPTIVE;
 }
 const Choices<Preset> kQualities = {{"draft", draft}, {"normal", normal}, {"fine", fine}};
@@ -145,7 +156,7 @@ class Declarations {
         ->required()
         ->type_name("");
     file("-o,--output", options_.output,
-         "Mesh to write, by suffix: .stl .ply (binary), .obj, .off, .vtp, .vtk, .gii, .glb, .3mf")
+         "Mesh to write, by suffix: " + mesh_suffixes(MeshUse::kWritten))
         ->required();
     choice("--space", kSpaces, options_.space,
            "Coordinates of the mesh: patient space in mm (lps: x to the left, y to the back, z to "
@@ -224,7 +235,8 @@ class Declarations {
            o.box = VoxelBox{{v[0], v[2], v[4]}, {v[1], v[3], v[5]}};
          });
     text("--keep", kKeepType, "all",
-         "Bodies to write, with the cavities in them: the largest, the N largest, or all of at "
+         "Bodies to write, with the cavities in them: all, the largest, the N largest, or those of "
+         "at "
          "least this volume, as in 500mm3",
          [&o = options_](const std::string& s) { o.keep = to_keep_rule("--keep", s); });
   }
@@ -252,13 +264,15 @@ class Declarations {
            "How voxels that are no cubes are met (4.4): the mesh is regular in mm (physical), in "
            "voxels with all its forces (voxel), or in the voxels of each level with its forces in "
            "mm (metric)");
-    text("--init", "KIND", init_text(options_),
-         "What the surface starts from: bubble, one around the object; bubbles=NX,NY,NZ, a grid of "
-         "them over the image, each count 1 .. 256; seeds=X,Y,Z,R;..., spheres (centres in "
-         "--space and in the image, R in mm); iso, the iso-surface of the coarsest image; "
-         "mask=FILE, the surface of the voxels "
-         "of a volume that are not 0; mesh=FILE, a closed oriented mesh (in --space)",
-         [&o = options_](const std::string& s) { read_init(s, o); });
+    text(
+        "--init", "KIND", init_text(options_),
+        "What the surface starts from: bubble, one around the object; bubbles=NX,NY,NZ, a grid of "
+        "them over the image, each count 1 .. 256; seeds=X,Y,Z,R;..., spheres (centres in "
+        "--space and in the image, R in mm); iso, the iso-surface of the coarsest image; "
+        "mask=FILE, the surface of the voxels "
+        "of a volume that are not 0; mesh=FILE, a closed oriented mesh, in the space that its file "
+        "names, else in --space",
+        [&o = options_](const std::string& s) { read_init(s, o); });
     file("--attach", options_.attach,
          "File of places (in --space, radii in mm, in the image) that draw the surface near them, "
          "\"attach X Y Z RADIUS "

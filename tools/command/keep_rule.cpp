@@ -10,8 +10,9 @@ namespace plc::tools {
 
 KeepRule to_keep_rule(const std::string& option, const std::string& text) {
   constexpr const char* kExpected =
-      "largest, a number of bodies above 0, or a volume such as 500mm3";
+      "all, largest, a number of bodies above 0, or a volume such as 500mm3";
   constexpr const char* kUnit = "mm3";
+  if (text == "all") return {};
   KeepRule rule{text, 0, 0};
   const size_t unit = text.rfind(kUnit);
   try {

@@ -7,14 +7,14 @@
 namespace plc::tools {
 
 struct KeepRule {
-  std::string text;           // as given; "": all are kept
+  std::string text;           // as given, but "" for "all"
   int64_t count = 0;          // as many, the largest; 0: by volume
   double least_volume = 0.0;  // in the unit of the coordinates
 };
 
-constexpr const char* kKeepType = "largest|N|Vmm3";
+constexpr const char* kKeepType = "all|largest|N|Vmm3";
 
-// "largest", a number of bodies, or "500mm3". Throws CLI::ValidationError.
+// "all", "largest", a number of bodies, or "500mm3". Throws CLI::ValidationError.
 KeepRule to_keep_rule(const std::string& option, const std::string& text);
 
 // A mark for each body, by its volume; of equal ones the first.

@@ -88,9 +88,12 @@ std::string page_of(const CLI::App& app) {
     details += command_text(*command);
   }
   text += ".SH DESCRIPTION\n" + escaped(app.get_description()) + ".\n" + list + details;
+  text += ".SH OPTIONS\n";
+  for (const CLI::Option* option : app.get_options()) text += entry_of(*option);
   return text +
          ".SH EXIT STATUS\n.TP\n0\nDone.\n.TP\n1\nA mesh is not valid.\n.TP\n2\nBad usage or "
-         "input: one line on stderr tells, and nothing is written.\n.TP\n130\nInterrupted, or "
+         "input: one line on stderr tells, and nothing half-written is "
+         "left.\n.TP\n130\nInterrupted, or "
          "nobody reads stdout.\n";
 }
 

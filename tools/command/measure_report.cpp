@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdio>
 
+#include "tools/command/rounded_text.h"
+
 namespace plc::tools {
 
 namespace {
@@ -46,22 +48,6 @@ Json distances_json(const plc_distances& d) {
 
 // ---- table ----------------------------------------------------------------------------------
 
-std::string rounded(double value) {
-  if (std::isnan(value)) return "not defined";
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
-std::string range(double low, double high) {
-  return std::isnan(low) ? rounded(low) : rounded(low) + " .. " + rounded(high);
-}
-
-std::string triple(const double* x) {
-  if (std::isnan(x[0])) return "not defined";
-  return rounded(x[0]) + ", " + rounded(x[1]) + ", " + rounded(x[2]);
-}
-
 void row(const char* name, const std::string& value, const char* unit = "") {
   const bool defined = value != "not defined";
   std::printf("%-24s %s%s%s\n", name, value.c_str(), defined && *unit != '\0' ? " " : "",
@@ -75,14 +61,15 @@ void print_shape(const plc_component_measures& c) {
   row("genus", c.genus < 0 ? "not defined" : std::to_string(c.genus));
   row("area", rounded(c.area), "mm2");
   row("volume", rounded(c.volume), "mm3");
-  row("bounding box", triple(c.low) + " .. " + triple(c.high), "mm");
-  row("centroid", triple(c.centroid), "mm");
-  row("second moments xx yy zz", triple(c.moments), "mm5");
-  row("second moments xy yz zx", triple(c.moments + 3), "mm5");
+  row("bounding box", rounded_triple(c.low) + " .. " + rounded_triple(c.high), "mm");
+  row("centroid", rounded_triple(c.centroid), "mm");
+  row("second moments xx yy zz", rounded_triple(c.moments), "mm5");
+  row("second moments xy yz zx", rounded_triple(c.moments + 3), "mm5");
   for (size_t i = 0; i < 3; ++i) {
     if (std::isnan(c.principal_moments[i])) continue;
     std::printf("principal axis %zu         %s mm5 along %s\n", i + 1,
-                rounded(c.principal_moments[i]).c_str(), triple(c.principal_axes + 3 * i).c_str());
+                rounded(c.principal_moments[i]).c_str(),
+                rounded_triple(c.principal_axes + 3 * i).c_str());
   }
 }
 
@@ -95,7 +82,7 @@ void print_components(const Measured& m) {
     std::printf("%9" PRId64 " %10" PRId64 " %10" PRId64 " %6s %12s %12s  %s\n", ++number,
                 c.vertices, c.faces, c.genus < 0 ? "-" : std::to_string(c.genus).c_str(),
                 rounded(c.area).c_str(), std::isnan(c.volume) ? "-" : rounded(c.volume).c_str(),
-                triple(c.centroid).c_str());
+                rounded_triple(c.centroid).c_str());
   }
   const int64_t more = m.component_count - number;
   if (more > 0) std::printf("%9s %" PRId64 " more\n", "and", more);
@@ -148,14 +135,14 @@ void print_measured(const Measured& m) {
   print_shape(m.whole);
   if (m.curvature) {
     const CurvatureSummary& c = *m.curvature;
-    row("mean curvature", range(c.mean_low, c.mean_high), "1/mm");
+    row("mean curvature", rounded_range(c.mean_low, c.mean_high), "1/mm");
     row("  average", rounded(c.mean_average), "1/mm");
-    row("Gaussian curvature", range(c.gaussian_low, c.gaussian_high), "1/mm2");
+    row("Gaussian curvature", rounded_range(c.gaussian_low, c.gaussian_high), "1/mm2");
     row("  integral", rounded(c.gaussian_integral));
   }
   if (m.geodesic) {
     const GeodesicSummary& g = *m.geodesic;
-    row("geodesic from", "vertex " + std::to_string(g.vertex) + " at " + triple(g.position.data()),
+    row("geodesic from", "vertex " + std::to_string(g.vertex) + " at " + rounded_triple(g.position),
         "mm");
     row("geodesic distance", "at most " + rounded(g.max) + " mm (vertex " +
                                  std::to_string(g.farthest) + "), " + std::to_string(g.reached) +

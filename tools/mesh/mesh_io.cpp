@@ -46,25 +46,33 @@ const Format* find_format(const std::string& path) {
   return found == kFormats.end() ? nullptr : found;
 }
 
-const Format& format_of(const std::string& path, bool written) {
+bool allows(const Format& format, MeshUse use) {
+  switch (use) {
+    case MeshUse::kRead:
+      return format.read != nullptr;
+    case MeshUse::kWritten:
+      return true;
+    case MeshUse::kWrittenWithScalars:
+      break;
+  }
+  return format.has_scalars;
+}
+
+const Format& format_of(const std::string& path, MeshUse use) {
   const Format* format = find_format(path);
   if (format == nullptr) {
-    throw Failure{path + ": unknown format of meshes (known are " + mesh_suffixes(written) + ")"};
+    throw Failure{path + ": unknown format of meshes (known are " + mesh_suffixes(use) + ")"};
   }
-  if (!written && format->read == nullptr) {
+  if (allows(*format, use)) return *format;
+  if (use == MeshUse::kRead) {
     throw Failure{path + ": " + format->suffix + " is written only (read are " +
-                  mesh_suffixes(false) + ")"};
+                  mesh_suffixes(use) + ")"};
   }
-  return *format;
+  throw Failure{path + ": this format has no values at vertices (" + mesh_suffixes(use) + " have)"};
 }
 
 const Format& format_for(const std::string& path, bool with_scalars) {
-  const Format& format = format_of(path, true);
-  if (with_scalars && !format.has_scalars) {
-    throw Failure{path +
-                  ": this format has no values at vertices (.ply, .vtp, .vtk, .gii and .glb have)"};
-  }
-  return format;
+  return format_of(path, with_scalars ? MeshUse::kWrittenWithScalars : MeshUse::kWritten);
 }
 
 std::string contents(const std::string& path) {
@@ -132,7 +140,7 @@ TriangleMesh MeshBuilder::finish() {
 }
 
 TriangleMesh read_mesh(const std::string& path) {
-  const Format& format = format_of(path, false);
+  const Format& format = format_of(path, MeshUse::kRead);
   const std::string data = contents(path);
   if (data.empty()) throw Failure{path + ": is empty"};
   try {
@@ -182,11 +190,11 @@ bool holds_scalars(const std::string& path) {
   return format != nullptr && format->has_scalars;
 }
 
-std::string mesh_suffixes(bool written) {
+std::string mesh_suffixes(MeshUse use) {
   std::string names;
   std::string last;
   for (const Format& format : kFormats) {
-    if (!written && format.read == nullptr) continue;
+    if (!allows(format, use)) continue;
     if (!last.empty()) names += (names.empty() ? "" : ", ") + last;
     last = format.suffix;
   }

@@ -46,8 +46,9 @@ TriangleMesh read_mesh(const std::string& path);
 
 // Whether the suffix is that of a mesh, not of an image.
 bool is_mesh_path(const std::string& path);
-// ".stl, .ply ...", of those that are read, or written.
-std::string mesh_suffixes(bool written);
+// ".stl, .ply ... and .3mf" of the formats that are used so.
+enum class MeshUse { kRead, kWritten, kWrittenWithScalars };
+std::string mesh_suffixes(MeshUse use);
 
 // Throws Failure unless the suffix is known, its format holds scalars where they are asked for, and
 // a file can be made at `path`: before a long run.

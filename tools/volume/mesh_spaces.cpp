@@ -66,13 +66,15 @@ std::optional<plc_space> space_named(const std::string& name) {
 
 void bring_to(TriangleMesh& mesh, plc_space space, plc_space assumed, const plc_image* image,
               const std::string& path) {
-  if (mesh.space.empty()) mesh.space = space_name(assumed);
+  const bool named = !mesh.space.empty();
+  if (!named) mesh.space = space_name(assumed);
   const std::string wanted = space_name(space);
   if (mesh.space == wanted) return;
   const bool from_voxels = mesh.space == space_names::kVoxel;
   const bool to_voxels = space == PLC_SPACE_VOXEL;
   if ((from_voxels || to_voxels) && image == nullptr) {
-    throw Failure{path + ": is in " + mesh.space + ", and between voxels and mm only its image, " +
+    throw Failure{path + (named ? ": is in " : ": names no space, and is taken to be in ") +
+                  mesh.space + ", and between voxels and mm only its image, " +
                   "which is not given, knows the way to " + wanted};
   }
   if (from_voxels) transform(mesh, *image, false);
