@@ -25,6 +25,12 @@ works "a surface in voxels" 0 "$pellicle" extract sagittal.mhd --iso 500 --level
 works "a smaller surface" 0 "$pellicle" extract oblique.mhd --iso 700 --levels 0 --quiet -o inner.stl
 works "values" 0 "$pellicle" measure surface.ply --curvature --distance inner.stl -o values.vtp
 
+# Where node is missing the page says what installs it.
+"$tests/../tools/view/build_page" "" "" "$here/npm" why.cpp >/dev/null || fails "build_page without node"
+purpose=$(grep -oE 'tools/setup.sh [a-z]+' why.cpp | cut -d' ' -f2)
+[ "$purpose" = page ] || fails "build_page names tools/setup.sh $purpose, which installs a browser, too, or nothing"
+grep -qE "^$purpose=\(.*nodejs npm" "$tests/../tools/setup.sh" || fails "tools/setup.sh $purpose installs no node and npm"
+
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
   refused "without node and npm" "node" "$pellicle" view oblique.mhd surface.ply -o out/a.html
   [ $failures -eq 0 ] || exit 1
