@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian packages that the named purposes need:
 #   tools/setup.sh [build] [test] [python] [demo] [lint] [compilers] [perf] [peers] [fuzz]
-#     [package] [coverage] [valgrind] [page] [view] [arm] [counts] [wasm] [windows]
+#     [package] [coverage] [valgrind] [page] [view] [arm] [counts] [wasm] [cohort] [windows]
 # Without a purpose: build and test, as cmake builds the tests, too, unless told otherwise.
 # Does nothing, and needs no rights and no network, where all of them are there.
 set -euo pipefail
 
 build=(g++ cmake make libhwy-dev libtbb-dev libmimalloc2.0 libinsighttoolkit5-dev libarchive-dev
-  libexpat1-dev zlib1g-dev libembree-dev libpng-dev libcli11-dev nlohmann-json3-dev
+  libexpat1-dev zlib1g-dev libembree-dev libpng-dev libcli11-dev nlohmann-json3-dev libxxhash-dev
   libblosc-dev libzstd-dev)
 test=(catch2 invesalius-examples jq mricron-data pkg-config python3)
 python=(python3-dev pybind11-dev python3-numpy python3-nibabel python3-pip python3-venv python3-setuptools
@@ -29,6 +29,7 @@ wasm=(emscripten nodejs catch2)
 windows=(g++-mingw-w64-x86-64-posix)
 page=(nodejs npm)  # the page of pellicle view
 view=("${page[@]}" chromium)  # its test
+cohort=(slurmctld slurmd slurm-client munge snakemake)  # what runs pellicle cohort in its tests
 
 [ $# -gt 0 ] || set -- build test
 wanted=()
@@ -51,10 +52,11 @@ for purpose in "$@"; do
     arm) wanted+=("${arm[@]}") ;;
     counts) wanted+=("${counts[@]}") ;;
     wasm) wanted+=("${wasm[@]}") ;;
+    cohort) wanted+=("${cohort[@]}") ;;
     windows) wanted+=("${windows[@]}") ;;
     *)
       echo "setup.sh: unknown purpose $purpose: build, test, python, demo, lint, compilers, perf," \
-        "peers, fuzz, package, coverage, valgrind, page, view, arm, counts, wasm or windows" >&2
+        "peers, fuzz, package, coverage, valgrind, page, view, arm, counts, wasm, cohort or windows" >&2
       exit 2
       ;;
   esac

@@ -38,10 +38,21 @@ same_options() {  # WHAT FOUND EXPECTED
   wrong=$(diff <(sort -u <<<"$2") <(sort -u <<<"$3")) || fails "$1: $(xargs <<<"$wrong")"
 }
 same_options "the manual page's options of all commands" "$(described_in OPTIONS)" "$(options_of '')"
+passed_on_in() {  # SECTION: the options that it says to be those of extract
+  awk -v section=".SH $1" '/^\.SH / {there = $0 == section} there && /^As of pellicle extract: /' source |
+    grep -oE -- '--[a-z-]+'
+}
+verbs_of() { "$pellicle" "$1" --help | sed -nE '/^Subcommands:/,$ s/^  ([a-z]+) .*/\1/p'; }
 for command in $commands; do
-  grep -qE "^\.B pellicle $command\$" source || fails "the manual page has no pellicle $command"
-  same_options "the manual page's options of $command" "$(described_in "PELLICLE $command")" "$(options_of "$command")"
+  verbs=$(verbs_of "$command")
+  mapfile -t calls < <(if [ -n "$verbs" ]; then printf "$command %s\n" $verbs; else echo "$command"; fi)
+  for call in "${calls[@]}"; do
+    grep -qxF ".B pellicle $call" source || fails "the manual page has no pellicle $call"
+    same_options "the manual page's options of $call" \
+      "$(described_in "PELLICLE $call"; passed_on_in "PELLICLE $call")" "$(options_of "$call")"
+  done
 done
+[ -n "$(passed_on_in "PELLICLE cohort plan")" ] || fails "the manual page names no options that are passed on"
 
 # ---- completion
 mkdir bin
@@ -58,6 +69,8 @@ complete_with() {  # WORD...: what can stand for the last one
 }
 same() { [ "$(sort -u <<<"$2")" = "$(sort -u <<<"$3")" ] || fails "completion of $1: $(xargs <<<"$2")"; }
 same "commands" "$(complete_with pellicle '' | grep -v '^-')" "$commands"
+same "verbs of cohort" "$(complete_with pellicle cohort '')" "$(printf '%s\n' plan run status collect submit)"
+same "options of a verb" "$(complete_with pellicle cohort run --)" "$(options_of 'cohort run')"
 same "me" "$(complete_with pellicle me)" "$(printf 'measure\nmesh')"
 for command in $commands; do
   same "options of $command" "$(complete_with pellicle "$command" --)" "$(options_of "$command")"

@@ -55,6 +55,8 @@ if(TARGET pellicle_command)
   install(FILES tools/cmake/pellicle.bash
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME pellicle
     COMPONENT pellicle)
+  install(FILES tools/cohort/Snakefile DESTINATION ${CMAKE_INSTALL_DATADIR}/pellicle
+    COMPONENT pellicle)
   # Slicer starts a program, without a subcommand, and asks it for --xml.
   set(slicer_dir ${CMAKE_INSTALL_LIBDIR}/pellicle/cli-modules)
   file(RELATIVE_PATH bin_from_slicer /${slicer_dir} /${CMAKE_INSTALL_BINDIR})

@@ -16,6 +16,7 @@
 
 #include "engine/pellicle.h"
 #include "tools/command/command_check.h"
+#include "tools/command/command_cohort.h"
 #include "tools/command/command_extract.h"
 #include "tools/command/command_info.h"
 #include "tools/command/command_labels.h"
@@ -74,6 +75,8 @@ class Command {
     phantom_ = add("phantom", "Write a synthetic test volume");
     render_ = add("render", "Draw a shaded picture of a mesh");
     view_ = add("view", "Write a page that shows an image and surfaces in any browser");
+    cohort_ =
+        add("cohort", "Extract surfaces from many scans, in shares, on a laptop or a cluster");
     add_extract_options(*extract_, extract_options_);
     add_label_options(*extract_, extract_options_);
     add_slicer_option(*extract_);
@@ -84,6 +87,8 @@ class Command {
     add_phantom_options(*phantom_, phantom_arguments_);
     add_render_options(*render_, render_options_);
     add_view_options(*view_, view_options_);
+    add_cohort_options(*cohort_, cohort_options_);
+    for (CLI::App* command : cohort_->get_subcommands({})) demand_file_names(*command);
     for (CLI::App* command : {extract_, info_, check_, measure_, mesh_, phantom_, render_, view_}) {
       demand_file_names(*command);
     }
@@ -102,9 +107,12 @@ class Command {
     } catch (const CLI::ParseError& e) {
       const auto unknown = app_.remaining();
       if (app_.get_subcommands().empty() && !unknown.empty()) {
-        return fail(
-            unknown[0] +
-            ": unknown command; extract, info, check, measure, mesh, phantom, render or view");
+        return fail(unknown[0] +
+                    ": unknown command; extract, info, check, measure, mesh, phantom, render, view "
+                    "or cohort");
+      }
+      if (cohort_->parsed() && cohort_->get_subcommands().empty()) {
+        return fail("cohort: what is to be done is one of plan, run, status, collect or submit");
       }
       return fail(e.what());
     }
@@ -115,6 +123,7 @@ class Command {
     if (mesh_->parsed()) return run_mesh(mesh_options_);
     if (phantom_->parsed()) return run_phantom(phantom_arguments_);
     if (render_->parsed()) return run_render(render_options_);
+    if (cohort_->parsed()) return run_cohort_command(*cohort_, cohort_options_, interrupt_);
     return run_view(view_options_);
   }
 
@@ -134,6 +143,7 @@ class Command {
   CLI::App* phantom_ = nullptr;
   CLI::App* render_ = nullptr;
   CLI::App* view_ = nullptr;
+  CLI::App* cohort_ = nullptr;
   ExtractOptions extract_options_;
   InfoOptions info_options_;
   CheckOptions check_options_;
@@ -142,6 +152,7 @@ class Command {
   PhantomArguments phantom_arguments_;
   RenderOptions render_options_;
   ViewOptions view_options_;
+  CohortOptions cohort_options_;
 };
 
 }  // namespace

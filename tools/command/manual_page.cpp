@@ -51,20 +51,61 @@ std::string entry_of(const CLI::Option& option) {
   return text + "\n";
 }
 
-std::string command_text(const CLI::App& command) {
-  std::vector<std::string> groups;
-  for (const CLI::Option* option : command.get_options()) {
-    const std::string& group = option->get_positional() ? "" : option->get_group();
-    if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
-  }
-  std::string text = ".SH PELLICLE " + escaped(command.get_name()) + "\n" +
-                     escaped(command.get_description()) + ".\n";
-  for (const std::string& group : groups) {
-    if (!group.empty() && groups.size() > 2) text += ".SS " + escaped(group) + "\n";
-    for (const CLI::Option* option : command.get_options()) {
-      if ((option->get_positional() ? "" : option->get_group()) == group) text += entry_of(*option);
+// A command and what it is called by: "cohort plan" for one that stands under another.
+struct Command {
+  std::string name;
+  const CLI::App* app;
+};
+
+std::vector<Command> commands_of(const CLI::App& app) {
+  std::vector<Command> commands;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    const auto under = command->get_subcommands({});
+    if (under.empty()) commands.push_back({command->get_name(), command});
+    for (const CLI::App* verb : under) {
+      commands.push_back({command->get_name() + " " + verb->get_name(), verb});
     }
   }
+  return commands;
+}
+
+// Whether `extract` has the same option; of commands that pass most of those on.
+bool is_of_extract(const CLI::Option& option, const CLI::App& command, const CLI::App& app) {
+  const CLI::App* extract = app.get_subcommand("extract");
+  if (command.get_parent() == &app || option.get_lnames().empty()) return false;
+  if (option.get_lnames()[0] == "help") return false;
+  const CLI::Option* same = extract->get_option_no_throw("--" + option.get_lnames()[0]);
+  return same != nullptr && same->get_description() == option.get_description();
+}
+
+std::string command_text(const Command& command, const CLI::App& app) {
+  std::vector<const CLI::Option*> own;
+  std::string passed_on;
+  for (const CLI::Option* option : command.app->get_options()) {
+    if (is_of_extract(*option, *command.app, app)) {
+      passed_on += (passed_on.empty() ? "" : ", ") + names_of(*option);
+    } else {
+      own.push_back(option);
+    }
+  }
+  std::vector<std::string> groups;
+  const auto group_of = [](const CLI::Option* option) {
+    return option->get_positional() ? std::string() : option->get_group();
+  };
+  for (const CLI::Option* option : own) {
+    if (std::find(groups.begin(), groups.end(), group_of(option)) == groups.end()) {
+      groups.push_back(group_of(option));
+    }
+  }
+  std::string text = ".SH PELLICLE " + escaped(command.name) + "\n" +
+                     escaped(command.app->get_description()) + ".\n";
+  for (const std::string& group : groups) {
+    if (!group.empty() && groups.size() > 2) text += ".SS " + escaped(group) + "\n";
+    for (const CLI::Option* option : own) {
+      if (group_of(option) == group) text += entry_of(*option);
+    }
+  }
+  if (!passed_on.empty()) text += ".PP\nAs of pellicle extract: " + passed_on + ".\n";
   return text;
 }
 
@@ -76,16 +117,15 @@ std::string page_of(const CLI::App& app) {
       ".SH SYNOPSIS\n";
   std::string list;
   std::string details;
-  for (const CLI::App* command : app.get_subcommands({})) {
+  for (const Command& command : commands_of(app)) {
     std::string positional;
-    for (const CLI::Option* option : command->get_options()) {
+    for (const CLI::Option* option : command.app->get_options()) {
       if (option->get_positional()) positional += " \\fI" + option->get_single_name() + "\\fR";
     }
-    text += std::string(list.empty() ? "" : ".br\n") + ".B pellicle " + command->get_name() + "\n" +
+    text += std::string(list.empty() ? "" : ".br\n") + ".B pellicle " + command.name + "\n" +
             positional.substr(positional.empty() ? 0 : 1) + " [\\fIOPTION\\fR]...\n";
-    list +=
-        ".TP\n" + bold(command->get_name()) + "\n" + escaped(command->get_description()) + ".\n";
-    details += command_text(*command);
+    list += ".TP\n" + bold(command.name) + "\n" + escaped(command.app->get_description()) + ".\n";
+    details += command_text(command, app);
   }
   text += ".SH DESCRIPTION\n" + escaped(app.get_description()) + ".\n" + list + details;
   text += ".SH OPTIONS\n";

@@ -1,0 +1,247 @@
+#include "tools/cohort/submit_slurm.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <sstream>
+#include <system_error>
+
+#include "tools/cohort/child.h"
+#include "tools/cohort/cohort_progress.h"
+#include "tools/cohort/scan_state.h"
+#include "tools/cohort/survey.h"
+#include "tools/file/atomic_file.h"
+#include "tools/file/failure.h"
+
+namespace plc::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMinute = 60;
+constexpr size_t kDefaultArraySize = 1001;  // Slurm's own
+constexpr int kPilots = 3;                  // are tried before it is given up
+
+std::string line_of(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) {
+    if (!line.empty()) line += ' ';
+    line += quoted(word);
+  }
+  return line;
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw Failure{folder + ": cannot be made: " + error.message()};
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  AtomicFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+// The largest index of an array, and one.
+size_t array_size() {
+  std::string config;
+  if (run_program({"scontrol", "show", "config"}, config) != 0) return kDefaultArraySize;
+  std::istringstream lines(config);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("MaxArraySize")) continue;
+    const size_t sign = line.find('=');
+    if (sign != std::string::npos) return std::max(2UL, std::stoul(line.substr(sign + 1)));
+  }
+  return kDefaultArraySize;
+}
+
+class Submission {
+ public:
+  Submission(const SubmitOptions& options, const Manifest& manifest)
+      : options_(options), manifest_(manifest), folder_(fs::absolute(options.folder)) {
+    folder_ = folder_.lexically_normal();
+    look();
+  }
+
+  void run() {
+    if (left_.empty()) {
+      std::printf("nothing is left to do\n");
+      return;
+    }
+    for (int i = 0; survey_.done == 0 && !left_.empty(); ++i) {
+      if (i == kPilots) throw Failure{"the pilot scans have failed, the last one: " + error_};
+      if (!pilot()) return;
+    }
+    if (left_.empty()) {
+      std::printf("nothing is left to do\n");
+      return;
+    }
+    size();
+    submit();
+  }
+
+ private:
+  void look() {
+    survey_ = survey_of(folder_, manifest_, std::time(nullptr));
+    left_ = survey_.left;
+    if (options_.retry_failed && tried_.empty()) {
+      for (const Scan& scan : manifest_.scans) {
+        if (result_of(folder_, scan).state == ScanState::kFailed) left_.push_back(&scan);
+      }
+    }
+  }
+
+  std::string new_file(const std::string& suffix) const {
+    const std::string submitted = folder_.string() + "/submitted";
+    for (int number = 1;; ++number) {
+      const std::string path = submitted + "/" + std::to_string(number);
+      if (!fs::exists(path + ".txt") && !fs::exists(path + ".sh")) return path + suffix;
+    }
+  }
+
+  // The largest scan, alone on a node. False: it has only been printed.
+  bool pilot() {
+    const Scan* largest = *std::max_element(
+        left_.begin(), left_.end(),
+        [](const Scan* a, const Scan* b) { return a->stamp.bytes < b->stamp.bytes; });
+    const std::string names = new_file(".txt");
+    std::vector<std::string> words = {"srun", "--job-name=pellicle-pilot", "--ntasks=1",
+                                      "--cpus-per-task=1"};
+    words.insert(words.end(), options_.slurm.begin(), options_.slurm.end());
+    words.insert(words.end(), {own_program(), "cohort", "run", folder_, "--scans=" + names,
+                               "--threads=1", "--retry-failed"});
+    std::printf("%s\n", line_of(words).c_str());
+    std::fflush(stdout);
+    if (options_.dry_run) {
+      std::printf(
+          "# No scan is done yet. This pilot would run %s, and its seconds and memory\n"
+          "# would size the array.\n",
+          largest->name.c_str());
+      return false;
+    }
+    make_folder(folder_.string() + "/submitted");
+    write_text(names, largest->name + "\n");
+    std::string output;
+    const int code = run_program(words, output);
+    tried_.push_back(largest->name);
+    const ScanResult result = result_of(folder_, *largest);
+    if (result.state == ScanState::kLeft) {
+      throw Failure{"srun: ends with exit code " + std::to_string(code) +
+                    ", and the pilot scan is not done"};
+    }
+    error_ = result.report.value("error", "");
+    look();
+    return true;
+  }
+
+  // From what is done, as it would be on one core.
+  void size() {
+    const double task = options_.minutes * kMinute;
+    double mean = std::max(survey_.mean_seconds, survey_.mean_cpu_seconds);
+    double longest = std::max(survey_.longest_seconds, survey_.longest_cpu_seconds);
+    // Scans apart use cores best; only where one does not fit in a task it gets several.
+    cores_ = options_.cores > 0 ? options_.cores
+                                : std::max(1, static_cast<int>(std::ceil(longest / task)));
+    mean = std::max(mean / cores_, 0.01);
+    longest /= cores_;
+    per_task_ = std::max<size_t>(1, static_cast<size_t>(task / mean));
+    tasks_ = (left_.size() + per_task_ - 1) / per_task_;
+    const size_t most = array_size() - 1;
+    if (tasks_ > most) {
+      std::printf("# MaxArraySize allows %zu tasks: each takes longer than %g minutes\n", most,
+                  options_.minutes);
+      tasks_ = most;
+    }
+    per_task_ = (left_.size() + tasks_ - 1) / tasks_;
+    seconds_ = mean * static_cast<double>(per_task_);
+    // A task that is late is ended, and what it has not done can be submitted again.
+    constexpr double kMargin = 1.5;
+    constexpr double kLongest = 2;
+    constexpr double kSpare = 3;
+    minutes_ = std::ceil(kMargin * seconds_ / kMinute + kLongest * longest / kMinute + kSpare);
+    // Larger scans than those that are done need more.
+    uint64_t largest = survey_.largest_input;
+    for (const Scan* scan : left_) largest = std::max(largest, scan->stamp.bytes);
+    constexpr double kMebibyte = 1024.0 * 1024.0;
+    constexpr double kRoom = 1.25;
+    constexpr double kStep = 64;
+    const double ratio = static_cast<double>(largest) /
+                         static_cast<double>(std::max<uint64_t>(survey_.largest_input, 1));
+    const double bytes = static_cast<double>(survey_.peak_bytes) * ratio * kRoom;
+    mebibytes_ = (std::ceil(bytes / kMebibyte / kStep) + 1) * kStep;
+  }
+
+  std::string script(const std::string& names) const {
+    std::ostringstream text;
+    text << "#!/bin/bash\n"
+         << "#SBATCH --job-name=pellicle\n"
+         << "#SBATCH --array=1-" << tasks_ << "\n"
+         << "#SBATCH --ntasks=1\n"
+         << "#SBATCH --cpus-per-task=" << cores_ << "\n"
+         << "#SBATCH --mem=" << static_cast<int64_t>(mebibytes_) << "M\n"
+         << "#SBATCH --time=" << static_cast<int64_t>(minutes_) << "\n"
+         << "#SBATCH --signal=B:TERM@60\n"
+         << "#SBATCH --requeue\n"
+         << "#SBATCH --open-mode=append\n"
+         << "#SBATCH --output=" << quoted(folder_.string() + "/logs/%A_%a.log") << "\n";
+    for (const std::string& option : options_.slurm) text << "#SBATCH " << option << "\n";
+    text << "exec " << line_of({own_program(), "cohort", "run", folder_, "--scans=" + names})
+         << " --task=\"$SLURM_ARRAY_TASK_ID/" << tasks_ << "\" --threads=" << cores_
+         << (options_.retry_failed ? " --retry-failed" : "") << "\n";
+    return text.str();
+  }
+
+  void submit() {
+    const std::string names = new_file(".txt");
+    const std::string file = names.substr(0, names.size() - 4) + ".sh";
+    std::string list;
+    for (const Scan* scan : left_) list += scan->name + "\n";
+    const std::string text = script(names);
+    const std::vector<std::string> words = {"sbatch", "--parsable", file};
+    std::printf("# %zu scans in %zu tasks of %zu, about %s each\n%s\n", left_.size(), tasks_,
+                per_task_, duration_text(seconds_).c_str(), line_of(words).c_str());
+    std::printf("# %s:\n%s", file.c_str(), text.c_str());
+    std::fflush(stdout);
+    if (options_.dry_run) return;
+    make_folder(folder_.string() + "/submitted");
+    make_folder(folder_.string() + "/logs");
+    write_text(names, list);
+    write_text(file, text);
+    std::string job;
+    const int code = run_program(words, job);
+    if (code != 0) {
+      std::error_code none;
+      fs::remove(names, none);
+      fs::remove(file, none);
+      throw Failure{"sbatch: ends with exit code " + std::to_string(code) +
+                    "; nothing has been submitted"};
+    }
+    job = job.substr(0, job.find_first_of(";\n"));
+    std::printf("# submitted as job %s; pellicle cohort status %s\n", job.c_str(),
+                quoted(folder_).c_str());
+  }
+
+  const SubmitOptions& options_;
+  const Manifest& manifest_;
+  fs::path folder_;
+  Survey survey_;
+  std::vector<const Scan*> left_;
+  std::vector<std::string> tried_;  // as pilots
+  std::string error_;               // of the last pilot
+  int cores_ = 1;
+  size_t per_task_ = 1, tasks_ = 1;
+  double seconds_ = 0;    // of a task, expected
+  double minutes_ = 0;    // that it may take
+  double mebibytes_ = 0;  // that it may have
+};
+
+}  // namespace
+
+void submit_slurm(const SubmitOptions& options, const Manifest& manifest) {
+  Submission(options, manifest).run();
+}
+
+}  // namespace plc::tools
