@@ -105,7 +105,7 @@ class Planner {
       const std::string text = cell;
       const std::string word = within(row, ", column " + name + ": ", [&] {
         const bool is_flag = parser_.kind_of(name) == ExtractParser::Kind::kFlag;
-        const std::string made = word_of(name, text, is_flag);
+        std::string made = word_of(name, text, is_flag);
         if (!made.empty()) parser_.check_alone(made);
         return made;
       });
@@ -146,7 +146,7 @@ class Planner {
 }  // namespace
 
 Manifest plan_cohort(const PlanOptions& options, const ExtractParser& parser) {
-  const Manifest manifest = Planner(options, parser).run();
+  Manifest manifest = Planner(options, parser).run();
   std::error_code error;
   fs::create_directories(options.folder, error);
   if (error) throw Failure{options.folder + ": cannot be made: " + error.message()};

@@ -80,7 +80,8 @@ std::vector<Surface> staged_surfaces(const std::string& folder, const Manifest& 
     const std::string middle = file.substr(begin, file.size() - begin - manifest.suffix.size());
     surface.name = middle.empty() ? "" : middle.substr(1);
     surface.staged = i->path().string();
-    surface.staged_report = work + "/" + kStaged + middle + ".json";
+    surface.staged_report = work;
+    surface.staged_report.append("/").append(kStaged).append(middle).append(".json");
     const std::string output = output_of(manifest, scan, surface.name);
     surface.mesh = output + manifest.suffix;
     surface.report = output + ".json";
@@ -111,7 +112,7 @@ void remove_earlier(const std::string& folder, const Scan& scan,
   for (const Json& surface : before["cohort"].value("surfaces", Json::array())) {
     for (const char* kind : {"mesh", "report"}) {
       const std::string path = surface.value(kind, "");
-      if (!kept.contains(path) && is_inside(path)) fs::remove(folder + "/" + path, none);
+      if (!kept.contains(path) && is_inside(path)) fs::remove(fs::path(folder) / path, none);
     }
   }
 }

@@ -99,7 +99,9 @@ std::vector<std::string> given_words(const CLI::App& command, const ExtractParse
     if (kind == ExtractParser::Kind::kUnknown || option->count() == 0) continue;
     if (kind == ExtractParser::Kind::kFlag) words.push_back("--" + name);
     if (kind == ExtractParser::Kind::kFlag) continue;
-    for (const std::string& result : option->results()) words.push_back("--" + name + "=" + result);
+    for (const std::string& result : option->results()) {
+      words.push_back(std::string("--").append(name).append("=").append(result));
+    }
   }
   return words;
 }

@@ -22,9 +22,9 @@ struct PhantomOptions {
   std::optional<plc_voxel_type> type;  // see full_scale()
   std::optional<int> count;            // blobs, labels: how many; vessels: trees; 1 .. 10000
   std::optional<int> depth;            // sierpinski: of recursion; vessels: of branching; 1 .. 12
-  // Where it is set, it is given the voxels, some planes at a time from the first on, and the volume
-  // that is returned has none: for volumes that no memory holds. Of vessels and sierpinski a value
-  // per voxel is held all the same. whole: what the volume is, without its voxels.
+  // Where it is set, it is given the voxels, some planes at a time from the first on, and the
+  // volume that is returned has none: for volumes that no memory holds. Of vessels and sierpinski a
+  // value per voxel is held all the same. whole: what the volume is, without its voxels.
   std::function<void(const plc_image& whole, std::span<const std::byte> planes)> take_planes;
 };
 
