@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A cohort on a real Slurm of one node: its tasks are killed, requeued, its node is drained.
 #   tests/tools/test_cohort_slurm.sh PELLICLE
-# Needs root and slurmctld, slurmd, munge; else it says so and is left out (exit 77).
+# Needs root, and slurmctld, slurmd, munge that start here; else it says so and is left out (exit 77).
 set -uo pipefail
 pellicle=$(realpath "$1")
 tests=$(realpath "$(dirname "${BASH_SOURCE[0]}")")
@@ -14,7 +14,8 @@ source "$tests/command_helpers.sh"
 # shellcheck source=tests/tools/cohort_helpers.sh
 source "$tests/cohort_helpers.sh"
 trap '"$tests/slurm_local.sh" stop "$here/slurm"; rm -rf "$here"' EXIT
-export_line=$("$tests/slurm_local.sh" start "$here/slurm") || { echo "Slurm does not start here."; exit 1; }
+export_line=$("$tests/slurm_local.sh" start "$here/slurm") ||
+  { echo "Left out: Slurm does not start on this machine: $(tail -n 3 "$here"/slurm/*.log)"; exit 77; }
 eval "$export_line"
 
 count=20
