@@ -464,8 +464,9 @@ PLC_API plc_status plc_extract(plc_context* context, const plc_image* image,
  * pi_I on them. Reads of the parameters all up to `reduction`, and derives what they leave open.
  * The volume may be destroyed afterwards; where it borrows, its voxels must stay. May be used for
  * any number of runs, of any contexts, at the same time. PLC_INVALID_DATA: NaN or infinite voxels,
- * an image of 2^31 voxels or more on a padded level, ...; PLC_INVALID_ARGUMENT: more levels than
- * the image has voxels for, iso out of its range, ... */
+ * an image of 2^40 voxels or more or 2^31 in a plane, with its padding; a coarser level, or an
+ * image of 32-bit integers, of 2^31 voxels or more; ...; PLC_INVALID_ARGUMENT: more levels than the
+ * image has voxels for, iso out of its range, ... */
 PLC_API plc_status plc_pyramid_create(plc_context* context, const plc_volume* volume,
                                       const plc_parameters* parameters, plc_pyramid** pyramid);
 PLC_API void plc_pyramid_destroy(plc_pyramid* pyramid);

@@ -59,7 +59,9 @@ HWY_INLINE Place locate(const GradientView& image, const Floats3& p) {
 // Where the lanes' cells lie among the stored voxels of an image.
 struct Stored {
   size_t row, plane;  // steps to the next row and plane
-  bool all;           // whether all eight voxels of every lane's cell are stored; else `first` lies
+  // Whether all eight voxels of every lane's cell are stored, and 32 bits hold their numbers; else
+  // `first` lies.
+  bool all;
   alignas(64) uint32_t first[kLanes];  // the first voxel of each lane's cell
 };
 
@@ -71,21 +73,23 @@ HWY_INLINE Stored stored(const ImageView& image, const Cells& x, const Cells& y,
   const int32_t pad = kPadded ? image.form.pad : 0;
   const int32_t row = image.dims[0] - 2 * pad;
   const int32_t rows = image.dims[1] - 2 * pad;
+  const int64_t plane = int64_t{row} * rows;
   const auto unpadded = [&](Ints index)
                             HWY_ATTR { return kPadded ? hn::Sub(index, hn::Set(di, pad)) : index; };
   const Ints i = unpadded(x.index), j = unpadded(y.index), k = unpadded(z.index);
-  const Ints cell =
-      hn::Add(i, hn::Add(hn::Mul(j, hn::Set(di, row)), hn::Mul(k, hn::Set(di, row * rows))));
+  const Ints cell = hn::Add(i, hn::Add(hn::Mul(j, hn::Set(di, row)),
+                                       hn::Mul(k, hn::Set(di, static_cast<int32_t>(plane)))));
   bool all = true;
   if constexpr (kPadded) {
     const auto within = [&](Ints index, int32_t dim) HWY_ATTR {
       return hn::And(hn::Gt(index, hn::Set(di, -1)), hn::Gt(hn::Set(di, dim - 2 * pad - 1), index));
     };
-    all = hn::AllTrue(di, hn::And(hn::And(within(i, image.dims[0]), within(j, image.dims[1])),
+    constexpr int64_t kMost = int64_t{1} << 32;  // of unsigned numbers
+    all = plane * (image.dims[2] - 2 * pad) <= kMost &&
+          hn::AllTrue(di, hn::And(hn::And(within(i, image.dims[0]), within(j, image.dims[1])),
                                   within(k, image.dims[2])));
   }
-  Stored result{
-      static_cast<size_t>(row), static_cast<size_t>(row) * static_cast<size_t>(rows), all, {}};
+  Stored result{static_cast<size_t>(row), static_cast<size_t>(plane), all, {}};
   hn::Store(hn::BitCast(du, cell), du, result.first);
   return result;
 }

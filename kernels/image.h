@@ -30,8 +30,10 @@ struct VoxelForm {
 // border voxels are replicated (paper, 4.2). No coordinate makes a kernel read outside the image: a
 // NaN counts as the image's lower border.
 struct ImageView {
-  const void* data = nullptr;   // dims - 2 pad voxels of form.type, borrowed
-  int32_t dims[3] = {0, 0, 0};  // with the padding, each >= 2; the product is below 2^31
+  const void* data = nullptr;  // dims - 2 pad voxels of form.type, borrowed
+  // With the padding, each >= 2. The product is below 2^31 where the voxels are UnitVoxels; else
+  // the products of two are, and that of all is below 2^40.
+  int32_t dims[3] = {0, 0, 0};
   float scale[3] = {1, 1, 1};
   float offset[3] = {0, 0, 0};
   VoxelForm form{};

@@ -119,8 +119,9 @@ HWY_INLINE NearestStored nearest_stored(Ints index, int32_t dim, int32_t pad) {
   return {nearest, hn::RebindMask(FloatTag(), hn::Eq(in_store, nearest))};
 }
 
-// Any place: for vectors with a lane whose cell lies in the padding or at its border, which are as
-// rare as objects that the image cuts.
+// Any place of any image: for vectors with a lane whose cell lies in the padding or at its border,
+// which are as rare as objects that the image cuts, and for images of more voxels than 32 bits
+// number. Rows they number always.
 template <class Voxel>
 HWY_NOINLINE Floats sample_padded(const ImageView& image, const Cells& x, const Cells& y,
                                   const Cells& z) {
@@ -142,20 +143,20 @@ HWY_NOINLINE Floats sample_padded(const ImageView& image, const Cells& x, const 
   };
   const auto xs = both(x.index, image.dims[0]), ys = both(y.index, image.dims[1]),
              zs = both(z.index, image.dims[2]);
-  const int32_t row = image.dims[0] - 2 * pad, rows = image.dims[1] - 2 * pad;
+  const auto row = static_cast<size_t>(image.dims[0] - 2 * pad);
+  const int32_t rows = image.dims[1] - 2 * pad;
   const auto* voxels = static_cast<const Voxel*>(image.data);
   const VoxelValues<Voxel> value(image.form);
   const auto corner = [&](const NearestStored& i, const NearestStored& j,
                           const NearestStored& k) HWY_ATTR {
     const hn::RebindToUnsigned<IntTag> du;
-    alignas(64) uint32_t at[kLanes];
+    alignas(64) uint32_t in_row[kLanes], of_row[kLanes];
     alignas(64) float voxel[kLanes];
-    hn::Store(
-        hn::BitCast(
-            du, hn::Add(i.index, hn::Mul(hn::Set(di, row),
-                                         hn::Add(j.index, hn::Mul(k.index, hn::Set(di, rows)))))),
-        du, at);
-    for (uint32_t l = 0; l < kLanes; ++l) voxel[l] = static_cast<float>(voxels[at[l]]);
+    hn::Store(hn::BitCast(du, i.index), du, in_row);
+    hn::Store(hn::BitCast(du, hn::Add(j.index, hn::Mul(k.index, hn::Set(di, rows)))), du, of_row);
+    for (uint32_t l = 0; l < kLanes; ++l) {
+      voxel[l] = static_cast<float>(voxels[size_t{of_row[l]} * row + in_row[l]]);
+    }
     return hn::IfThenElse(hn::And(hn::And(i.same, j.same), k.same), value(hn::Load(d, voxel)),
                           pad_value);
   };

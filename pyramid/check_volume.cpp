@@ -1,24 +1,19 @@
 #include "pyramid/check_volume.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 namespace plc {
 
-namespace {
-
-// Compared before it is multiplied out: products of three dims may pass 2^63.
-bool has_image_dims(const std::array<int64_t, 3>& dims) {
-  int64_t voxels = 1;
+// Products of two are looked at before those of three, which may pass 2^63.
+bool is_volume_size(const std::array<int64_t, 3>& dims) {
+  const auto [m, n, p] = dims;
   for (const int64_t dim : dims) {
-    if (dim < kMinDim || dim >= kMaxVoxels) return false;
-    voxels *= dim;
-    if (voxels >= kMaxVoxels) return false;
+    if (dim < 1 || dim >= kMaxPlane) return false;
   }
-  return true;
+  return m * n < kMaxPlane && n * p < kMaxPlane && p * m < kMaxPlane && m * n * p < kMaxVolume;
 }
-
-}  // namespace
 
 Status check_volume(const VolumeView& volume) {
   if (volume.voxels == nullptr) {
@@ -29,10 +24,11 @@ Status check_volume(const VolumeView& volume) {
         ErrorCode::kInvalidArgument,
         "volume: voxel type " + std::to_string(static_cast<int>(volume.type)) + " is not known"};
   }
-  if (!has_image_dims(volume.dims)) {
+  if (*std::min_element(volume.dims.begin(), volume.dims.end()) < kMinDim ||
+      !is_volume_size(volume.dims)) {
     return {ErrorCode::kInvalidData, "image of " + voxels_text(volume.dims) +
                                          ": expected at least 2 on every axis, fewer than 2^31 in "
-                                         "all"};
+                                         "a plane, fewer than 2^40 in all"};
   }
   for (const double spacing : volume.spacing) {
     if (std::isfinite(spacing) && spacing > 0.0) continue;

@@ -9,12 +9,18 @@
 
 namespace plc {
 
-inline constexpr int64_t kMaxVoxels = int64_t{1} << 31;  // voxel indices are 32-bit in the kernels
+// Of images whose voxels are floats, and of gradients: their kernels number voxels by 32 bits.
+inline constexpr int64_t kMaxVoxels = int64_t{1} << 31;
+// Of volumes that are read where they lie: their kernels number rows by 32 bits.
+inline constexpr int64_t kMaxPlane = int64_t{1} << 31;  // of voxels, across every axis
+inline constexpr int64_t kMaxVolume = int64_t{1} << 40;
 inline constexpr int64_t kMinDim = 2;  // a cell of the interpolation needs two voxels
 
-// kInvalidArgument (no voxels, unknown type) or kInvalidData (dims outside kMinDim .. kMaxVoxels-1,
-// kMaxVoxels or more in all, spacing not finite and greater than 0). The voxels are not read.
+// kInvalidArgument (no voxels, unknown type) or kInvalidData (dims below kMinDim, not
+// is_volume_size(), spacing not finite and greater than 0). The voxels are not read.
 Status check_volume(const VolumeView& volume);
+// Whether all products of two dims are below kMaxPlane, and that of all is below kMaxVolume.
+bool is_volume_size(const std::array<int64_t, 3>& dims);
 
 // "M x N x P voxels"
 std::string voxels_text(const std::array<int64_t, 3>& dims);

@@ -18,6 +18,12 @@ namespace plc {
 
 namespace {
 
+Status check_size(const std::array<int64_t, 3>& dims) {
+  if (dims[0] * dims[1] * dims[2] < kMaxVoxels) return {};
+  return {ErrorCode::kInvalidData,
+          "gradient norm of " + voxels_text(dims) + ": expected fewer than 2^31"};
+}
+
 Status check_sigma(const VolumeView& volume, double sigma_mm) {
   if (!(std::isfinite(sigma_mm) && sigma_mm >= 0.0)) {
     return {ErrorCode::kInvalidArgument,
@@ -78,6 +84,7 @@ Status gradient_norm(const VolumeView& volume, double sigma_mm, const Executor& 
                      Buffer<float>& norm) {
   norm.clear();
   Status status = check_volume(volume);
+  if (status.ok()) status = check_size(volume.dims);
   if (status.ok()) status = check_sigma(volume, sigma_mm);
   if (!status.ok()) return status;
   bool enough_memory = true;

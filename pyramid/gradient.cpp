@@ -39,6 +39,12 @@ Status check_units(const std::array<double, 3>& voxel_length, double bound) {
   return {};
 }
 
+Status check_size(const std::array<int64_t, 3>& dims) {
+  if (dims[0] * dims[1] * dims[2] < kMaxVoxels) return {};
+  return {ErrorCode::kInvalidData,
+          "gradient of " + voxels_text(dims) + ": expected fewer than 2^31"};
+}
+
 void copy_values(const PyramidLevel& level, const Executor& executor, float* values) {
   const ImageView image = level_image(level);
   executor.run(static_cast<size_t>(level.dims[2]), [&](size_t z) {
@@ -54,6 +60,7 @@ Status build_gradient(const PyramidLevel& level, const std::array<double, 3>& vo
                       double bound, const Executor& executor, Buffer<Float4>& gradient) {
   gradient.clear();
   Status status = check_units(voxel_length, bound);
+  if (status.ok()) status = check_size(level.dims);
   if (!status.ok()) return status;
   std::array<float, 3> scale{};
   for (size_t a = 0; a < 3; ++a) scale[a] = within_floats(1.0 / voxel_length[a]);

@@ -55,6 +55,30 @@ Status check_depth(const std::array<int64_t, 3>& padded, const PyramidSpec& spec
                                            "; at most " + std::to_string(most)};
 }
 
+Window window_of(const PyramidSpec& spec) {
+  return {spec.window_low, spec.window_high};
+}
+
+Status check_floats(int level, const std::array<int64_t, 3>& dims) {
+  if (dims[0] * dims[1] * dims[2] < kMaxVoxels) return {};
+  return {ErrorCode::kInvalidData, "level " + std::to_string(level) + " of " + voxels_text(dims) +
+                                       ": expected fewer than 2^31, as they are floats; cut the "
+                                       "image, or reduce more"};
+}
+
+// The levels whose voxels are floats: all but a borrowed I_0.
+Status check_levels(const VolumeView& volume, const PyramidSpec& spec) {
+  std::array<int64_t, 3> dims = padded_dims(volume.dims, spec.pad_voxels);
+  const VoxelForm form = borrowed_form(volume, window_of(spec), spec.pad_voxels, spec.pad_value);
+  for (int h = 0; h <= spec.levels; ++h) {
+    if (h > 0 || form.type == ImageType::kUnit) {
+      if (Status s = check_floats(h, dims); !s.ok()) return s;
+    }
+    for (int64_t& dim : dims) dim = reduced(dim, spec.reduction);
+  }
+  return {};
+}
+
 // Sizes and units of (11); the real size mu x nu x pi is that of I_0 at all levels.
 PyramidLevel next_level(const PyramidLevel& level, double reduction) {
   PyramidLevel next;
@@ -81,10 +105,6 @@ bool fill_level(const PyramidLevel& from, const Executor& executor, PyramidLevel
   }
   to.values.resize_uninitialized(voxels_of(to));
   return reduce_image(level_image(from), taps, to.dims, executor, to.values.data());
-}
-
-Window window_of(const PyramidSpec& spec) {
-  return {spec.window_low, spec.window_high};
 }
 
 void fill_base(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
@@ -164,13 +184,16 @@ std::array<int64_t, 3> padded_dims(const std::array<int64_t, 3>& dims, int pad_v
   return padded;
 }
 
-Status check_padded(const std::array<int64_t, 3>& dims, int pad_voxels) {
-  const std::array<int64_t, 3> padded = padded_dims(dims, pad_voxels);
-  const int64_t plane = padded[0] * padded[1];
-  if (plane < kMaxVoxels && plane * padded[2] < kMaxVoxels) return {};
-  return {ErrorCode::kInvalidData, "image of " + voxels_text(padded) + " with its padding of " +
-                                       std::to_string(pad_voxels) +
-                                       ": expected fewer than 2^31 in all"};
+Status check_padded(const VolumeView& volume, int pad_voxels) {
+  const std::array<int64_t, 3> padded = padded_dims(volume.dims, pad_voxels);
+  if (!is_volume_size(padded)) {
+    return {ErrorCode::kInvalidData, "image of " + voxels_text(padded) + " with its padding of " +
+                                         std::to_string(pad_voxels) +
+                                         ": expected fewer than 2^31 in a plane, fewer than 2^40 "
+                                         "in all"};
+  }
+  if (volume.type == VoxelType::kI32) return check_floats(0, padded);
+  return {};
 }
 
 Status build_pyramid(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
@@ -179,8 +202,9 @@ Status build_pyramid(const VolumeView& volume, const PyramidSpec& spec, const Ex
   Status status = check_volume(volume);
   if (status.ok()) status = check_spec(spec);
   if (!status.ok()) return status;
-  status = check_padded(volume.dims, spec.pad_voxels);
+  status = check_padded(volume, spec.pad_voxels);
   if (status.ok()) status = check_depth(padded_dims(volume.dims, spec.pad_voxels), spec);
+  if (status.ok()) status = check_levels(volume, spec);
   if (status.ok()) status = build_levels(volume, spec, executor, pyramid);
   if (!status.ok()) pyramid.levels.clear();
   return status;

@@ -60,13 +60,14 @@ float base_value(const VolumeView& volume, const PyramidSpec& spec, double value
 // The size of I_0: `dims`, of a volume that check_volume has passed, with the padding on every
 // side.
 std::array<int64_t, 3> padded_dims(const std::array<int64_t, 3>& dims, int pad_voxels);
-// kInvalidData: that is 2^31 voxels or more.
-Status check_padded(const std::array<int64_t, 3>& dims, int pad_voxels);
+// kInvalidData: that is too large for a volume, or for an image of floats, which 32-bit integers
+// become.
+Status check_padded(const VolumeView& volume, int pad_voxels);
 
 // Builds levels 0 .. spec.levels. I_0 borrows volume.voxels, which must outlive the pyramid; 32-bit
 // integers, and what has a window beyond the range of floats, become floats. Errors:
 // kInvalidArgument (reduction, window, level count too deep for the size), kInvalidData (dims, a
-// padded level of 2^31 voxels or more), kOutOfMemory. The same bits for any executor and any
+// level of floats of 2^31 voxels or more), kOutOfMemory. The same bits for any executor and any
 // target.
 Status build_pyramid(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
                      Pyramid& pyramid);

@@ -23,6 +23,7 @@ constexpr size_t kBins = size_t{1} << 12;
 
 // Slices per task: each looks at one more on either side.
 constexpr size_t kSlices = 8;
+constexpr size_t kMostCounted = std::numeric_limits<uint32_t>::max();  // voxels of a task's slices
 constexpr size_t kWord = sizeof(uint64_t);
 
 // Whether voxels belong to the object, by a comparison in their own type.
@@ -76,7 +77,8 @@ class BoundaryHistogram {
         width_(static_cast<size_t>(volume.dims[0])),
         rows_(static_cast<size_t>(volume.dims[1])),
         slices_(static_cast<size_t>(volume.dims[2])),
-        parts_((slices_ + kSlices - 1) / kSlices) {
+        slices_per_part_(std::min(kSlices, kMostCounted / (width_ * rows_))),
+        parts_((slices_ + slices_per_part_ - 1) / slices_per_part_) {
     executor.run(parts_.size(), [&](size_t part) { scan(part); });
     for (auto& side : bins_) side.assign(kBins, 0);
     for (const Part& part : parts_) {
@@ -127,8 +129,8 @@ class BoundaryHistogram {
 
   template <typename Voxel>
   void scan(const Voxel* voxels, size_t index) {
-    const size_t begin = index * kSlices;
-    const size_t end = std::min(slices_, begin + kSlices);
+    const size_t begin = index * slices_per_part_;
+    const size_t end = std::min(slices_, begin + slices_per_part_);
     const size_t size = width_ * rows_;
     for (auto& side : parts_[index].bins) side.assign(kBins, 0);
     const InsideTest<Voxel> inside(iso_, above_);
@@ -189,6 +191,7 @@ class BoundaryHistogram {
   double iso_;
   bool above_;
   size_t width_, rows_, slices_;
+  size_t slices_per_part_;  // at least one: a plane has fewer than 2^31 voxels
   Vector<Part> parts_;
   std::array<Vector<uint64_t>, 2> bins_;
 };

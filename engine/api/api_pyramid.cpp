@@ -68,7 +68,7 @@ Status build(const std::shared_ptr<const VolumeData>& source, const plc_paramete
   plc_parameters& p = pyramid.parameters;
   VolumeView volume = source->view;
   // Before all its voxels are looked at.
-  if (Status s = check_padded(volume.dims, kPadVoxels); !s.ok()) return s;
+  if (Status s = check_padded(volume, kPadVoxels); !s.ok()) return s;
   if (p.feature == PLC_FEATURE_GRADIENT_NORM) {
     if (Status s = gradient_norm(volume, p.feature_sigma, host.schedule, pyramid.feature);
         !s.ok()) {

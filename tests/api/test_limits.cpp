@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "engine/pellicle.h"
+#include "tests/samples/address_space.h"
 
 namespace {
 
@@ -61,23 +63,6 @@ plc_status create(const Host& host, const plc_image& image, plc_ownership owners
   return status;
 }
 
-// Address space that nobody may read.
-class Forbidden {
- public:
-  explicit Forbidden(size_t size) : size_(size) {
-    data_ = mmap(nullptr, size, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    REQUIRE(data_ != MAP_FAILED);
-  }
-  ~Forbidden() { munmap(data_, size_); }
-  Forbidden(const Forbidden&) = delete;
-  Forbidden& operator=(const Forbidden&) = delete;
-  const void* data() const { return data_; }
-
- private:
-  size_t size_;
-  void* data_;
-};
-
 constexpr double kXyz[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 constexpr uint32_t kAbc[3] = {0, 1, 2};
 
@@ -123,14 +108,26 @@ TEST_CASE("A copy that memory has no room for is refused before it is begun", "[
   CHECK(host.peak() <= int64_t{1} << 20);
 }
 
-TEST_CASE("Levels of 2^31 voxels and more are refused without memory for them, and nothing is read",
+TEST_CASE("Levels of too many voxels are refused without memory for them, and nothing is read",
           "[limits]") {
   const Host host(int64_t{64} << 20);
-  // The first has fewer voxels than 2^31, but not with what is around it.
-  for (const int64_t n : {int64_t{1285}, int64_t{1300}}) {
-    CAPTURE(n);
-    const Forbidden voxels(static_cast<size_t>(n * n * n));
-    const plc_image image = image_of(PLC_U8, voxels.data(), n, n, n);
+  struct Refused {
+    plc_voxel_type type;
+    int64_t size[3];
+  };
+  // The second of each has fewer voxels than are too many, but not with what is around it.
+  constexpr Refused kRefused[] = {{PLC_I32, {1300, 1300, 1300}},
+                                  {PLC_I32, {1285, 1285, 1285}},
+                                  {PLC_U8, {int64_t{1} << 16, int64_t{1} << 15, 2}},
+                                  {PLC_U8, {(int64_t{1} << 16) - 1, (int64_t{1} << 15) - 1, 2}},
+                                  {PLC_U8, {2, 2, int64_t{1} << 30}},
+                                  {PLC_U8, {10321, 10321, 10321}}};
+  for (const Refused& refused : kRefused) {
+    const auto [x, y, z] = refused.size;
+    CAPTURE(x, y, z);
+    const size_t bytes = refused.type == PLC_I32 ? 4 : 1;
+    const samples::AddressSpace voxels(bytes * static_cast<size_t>(x * y * z), PROT_NONE);
+    const plc_image image = image_of(refused.type, voxels.data(), x, y, z);
     plc_volume* volume = nullptr;
     REQUIRE(plc_volume_create(host.get(), &image, PLC_BORROW, &volume) == PLC_OK);
     plc_parameters parameters;
@@ -145,6 +142,45 @@ TEST_CASE("Levels of 2^31 voxels and more are refused without memory for them, a
     CHECK(plc_extract(host.get(), &image, &parameters, nullptr, &surface) == PLC_INVALID_DATA);
     CHECK(surface == nullptr);
   }
+}
+
+TEST_CASE("Of an image of more than 2^31 voxels surfaces are found at both ends", "[limits]") {
+  constexpr int64_t kX = 1300, kY = 1300, kZ = 1300;
+  const samples::AddressSpace space(static_cast<size_t>(kX * kY * kZ), PROT_READ | PROT_WRITE);
+  auto* voxels = static_cast<uint8_t*>(space.data());
+  constexpr double kRadius = 25, kSoft = 3;
+  const auto put_ball = [&](int64_t centre) {
+    constexpr auto kReach = static_cast<int64_t>(kRadius + kSoft) + 1;
+    for (int64_t z = -kReach; z <= kReach; ++z) {
+      for (int64_t y = -kReach; y <= kReach; ++y) {
+        for (int64_t x = -kReach; x <= kReach; ++x) {
+          const double away = std::sqrt(static_cast<double>(x * x + y * y + z * z)) - kRadius;
+          const double value = std::clamp(100 - away * (100 / kSoft), 0.0, 200.0);
+          voxels[((centre + z) * kY + centre + y) * kX + centre + x] = static_cast<uint8_t>(value);
+        }
+      }
+    }
+  };
+  put_ball(60);
+  put_ball(1240);
+  const Host host;
+  const plc_image image = image_of(PLC_U8, voxels, kX, kY, kZ);
+  plc_parameters parameters;
+  plc_parameters_defaults(&parameters);
+  parameters.iso = 100;
+  parameters.reduction = 2;
+  parameters.levels = 3;
+  plc_surface* surface = nullptr;
+  const plc_status status = plc_extract(host.get(), &image, &parameters, nullptr, &surface);
+  CAPTURE(host.message());
+  REQUIRE(status == PLC_OK);
+  plc_measures measures;
+  plc_measures_defaults(&measures);
+  REQUIRE(plc_surface_measure(host.get(), surface, PLC_SPACE_VOXEL, &measures) == PLC_OK);
+  constexpr double kBall = 4 * 3.14159265358979 / 3 * kRadius * kRadius * kRadius;
+  CHECK(measures.components == 2);
+  CHECK(measures.volume == Approx(2 * kBall).epsilon(0.02));
+  plc_surface_destroy(surface);
 }
 
 TEST_CASE("Impossible counts of vertices and faces are refused before they are read", "[limits]") {

@@ -362,11 +362,25 @@ TEST_CASE("a volume that cannot be an image is refused", "[pyramid]") {
   volume.dims = {1, 8, 8};
   require_refused(build_status(volume, spec), ErrorCode::kInvalidData,
                   "image of 1 x 8 x 8 voxels: expected at least 2 on every axis, fewer than 2^31 "
-                  "in all");
-  volume.dims = {1279, 1279, 1300};  // padding takes it over the limit
+                  "in a plane, fewer than 2^40 in all");
+  volume.dims = {46333, 46333, 2};  // padding takes it over the limit
   require_refused(build_status(volume, spec), ErrorCode::kInvalidData,
-                  "image of 1291 x 1291 x 1312 voxels with its padding of 6: expected fewer than "
-                  "2^31 in all");
+                  "image of 46345 x 46345 x 14 voxels with its padding of 6: expected fewer than "
+                  "2^31 in a plane, fewer than 2^40 in all");
+  volume.dims = {2400, 2400, 2400};
+  require_refused(build_status(volume, {.reduction = 1.5, .levels = 2}), ErrorCode::kInvalidData,
+                  "level 1 of 1608 x 1608 x 1608 voxels: expected fewer than 2^31, as they are "
+                  "floats; cut the image, or reduce more");
+  volume.dims = {1279, 1279, 1300};
+  // A window that floats do not hold, and voxels that they do not.
+  require_refused(build_status(volume, {.levels = 0, .window_high = 1e31}), ErrorCode::kInvalidData,
+                  "level 0 of 1291 x 1291 x 1312 voxels: expected fewer than 2^31, as they are "
+                  "floats; cut the image, or reduce more");
+  volume.type = VoxelType::kI32;
+  require_refused(build_status(volume, {.levels = 0}), ErrorCode::kInvalidData,
+                  "level 0 of 1291 x 1291 x 1312 voxels: expected fewer than 2^31, as they are "
+                  "floats; cut the image, or reduce more");
+  volume.type = good.type;
   volume.dims = {int64_t{1} << 30, int64_t{1} << 30, int64_t{1} << 30};  // 0 modulo 2^64
   REQUIRE(build_status(volume, {.levels = 0, .pad_voxels = 0}).code() == ErrorCode::kInvalidData);
   for (const double spacing : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
