@@ -31,8 +31,10 @@ says "dry run" '^srun .* cohort run ' stdout
 [ -z "$(squeue -h)" ] || fails "dry run: submits"
 
 # ---- the pilot, and an array of more tasks than MaxArraySize allows
-works "submit" 0 "$pellicle" cohort submit slurm study --minutes 0.001 --option=--comment=made-up
+works "submit" 0 "$pellicle" cohort submit slurm study --minutes 0.00001 --option=--comment=made-up
 says "submit" '^srun ' stdout
+says "submit" "no node has more than $(nproc) cores" stdout
+says "submit" "^#SBATCH --cpus-per-task=$(nproc)\$" stdout
 says "submit" 'MaxArraySize allows 10 tasks' stdout
 says "submit" '^sbatch --parsable .*/submitted/2.sh' stdout
 says "submit" '^#SBATCH --array=1-10$' stdout

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <iterator>
 #include <sstream>
 #include <system_error>
 
@@ -56,6 +57,20 @@ size_t array_size() {
     if (sign != std::string::npos) return std::max(2UL, std::stoul(line.substr(sign + 1)));
   }
   return kDefaultArraySize;
+}
+
+// Of the node that has the most, in the partition that the options name; a job of more waits for
+// ever. 0 where sinfo does not tell.
+int most_cores(const std::vector<std::string>& options) {
+  std::vector<std::string> words = {"sinfo", "--noheader", "--Node", "--format=%c"};
+  std::copy_if(options.begin(), options.end(), std::back_inserter(words),
+               [](const std::string& option) { return option.starts_with("--partition="); });
+  std::string nodes;
+  if (run_program(words, nodes) != 0) return 0;
+  int most = 0;
+  std::istringstream counts(nodes);
+  for (int cores = 0; counts >> cores;) most = std::max(most, cores);
+  return most;
 }
 
 class Submission {
@@ -143,8 +158,15 @@ class Submission {
     double mean = std::max(survey_.mean_seconds, survey_.mean_cpu_seconds);
     double longest = std::max(survey_.longest_seconds, survey_.longest_cpu_seconds);
     // Scans apart use cores best; only where one does not fit in a task it gets several.
-    cores_ = options_.cores > 0 ? options_.cores
-                                : std::max(1, static_cast<int>(std::ceil(longest / task)));
+    cores_ = options_.cores > 0
+                 ? options_.cores
+                 : std::max(1, static_cast<int>(std::min(std::ceil(longest / task), 1e6)));
+    const int most_of_node = most_cores(options_.slurm);
+    if (options_.cores == 0 && most_of_node > 0 && cores_ > most_of_node) {
+      std::printf("# no node has more than %d cores: some scans take longer than %g minutes\n",
+                  most_of_node, options_.minutes);
+      cores_ = most_of_node;
+    }
     mean = std::max(mean / cores_, 0.01);
     longest /= cores_;
     per_task_ = std::max<size_t>(1, static_cast<size_t>(task / mean));
