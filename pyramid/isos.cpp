@@ -96,7 +96,7 @@ size_t list_object(const std::vector<float>& row, float iso, bool above,
                    std::vector<uint8_t>& inside, std::vector<uint32_t>& places) {
   constexpr size_t kWord = sizeof(uint64_t);
   const size_t width = row.size();
-  // Bytes may be anything's: behind plain pointers the loops can be vectors.
+  // Bytes may alias everything else: through local pointers the compiler makes vector loops.
   const float* value = row.data();
   uint8_t* side = inside.data();
   if (above) {

@@ -40,7 +40,7 @@ class Memory {
   // What allocate() has thrown for, the first time since this was forgotten. size 0: for nothing.
   struct Refusal {
     uint64_t size = 0;
-    int64_t in_use = 0;  // then
+    int64_t in_use = 0;  // when it was refused
   };
   Refusal refusal() const {
     return {refused_.load(std::memory_order_relaxed), in_use_.load(std::memory_order_relaxed)};

@@ -26,8 +26,8 @@ constexpr std::array<float, 5> kWide{0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
 // Facets of edges e lie off a surface of curvature k by about k e^2 / 16 in the mean, once the mean
 // of their distances along the normal is 0.
 constexpr double kOff = 1.0 / 16;
-// Second differences along x of those along y of those along z see nothing of most shapes, and of
-// noise of variance 1 have a variance of 6^3; half of the values of a normal distribution are
+// The second difference along z of that along y of that along x vanishes on most shapes; of noise
+// of variance 1 it has a variance of 6^3. Half of the values of a normal distribution are
 // nearer to 0 than this many standard deviations.
 constexpr std::array<float, 3> kSecond{1, -2, 1};
 constexpr double kSeenOfNoise = 14.697, kMedian = 0.6745;

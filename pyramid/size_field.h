@@ -30,7 +30,7 @@ struct SizeSpec {
 class SizeField {
  public:
   static constexpr float kStep = 1.0F / 32;
-  // What above_delta() may be.
+  // The range of above_delta(), in delta.
   static constexpr float kLeast = kStep - 1, kMost = 255 * kStep - 1;
 
   // image: of the level, its scale and offset those of mesh space. delta: in mesh units. The same

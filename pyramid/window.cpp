@@ -34,7 +34,7 @@ class InsideTest {
     // The voxel value of the object that is nearest to iso.
     if constexpr (std::is_integral_v<Voxel>) {
       const double end = above ? std::ceil(iso) : std::floor(iso);
-      // Where no value is beyond iso, none is: the comparison with the extreme one is then false.
+      // Where the type has no value beyond iso, no voxel is inside.
       const double least = std::numeric_limits<Voxel>::min();
       const double most = std::numeric_limits<Voxel>::max();
       none_ = above ? end > most : end < least;
@@ -49,7 +49,8 @@ class InsideTest {
 
   // inside[i] = 1 where voxel i belongs to the object, else 0.
   void test(const Voxel* voxels, size_t count, uint8_t* inside) const {
-    const Voxel end = end_;  // bytes may be anything's, members too: a local lets loops be vectors
+    const Voxel end =
+        end_;  // a local: bytes may alias members, and the loop would not become a vector one
     if (none_) {
       std::fill_n(inside, count, uint8_t{0});
     } else if (above_) {

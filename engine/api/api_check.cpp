@@ -5,6 +5,7 @@
 
 #include "engine/api/api_extras.h"
 #include "engine/api/handles.h"
+#include "engine/base/mesh_arrays.h"
 #include "engine/measure/mesh_input.h"
 #include "engine/start/mesh_import.h"
 
@@ -55,7 +56,8 @@ plc_status plc_check_mesh(plc_context* context, const double* xyz, int64_t verte
   return plc::guarded(context, [&]() -> Status {
     if (Status s = plc::check_output(check, "check"); !s.ok()) return s;
     plc::MeshCheck found;
-    Status s = plc::check_mesh(xyz, vertex_count, abc, face_count, context->host->schedule, found);
+    Status s = plc::check_mesh(plc::mesh_arrays(xyz, vertex_count, abc, face_count),
+                               context->host->schedule, found);
     if (s.ok()) plc::give_struct(plc::record_of(found), check);
     return s;
   });
@@ -77,22 +79,17 @@ plc_status plc_surface_create(plc_context* context, plc_space space, const plc_i
       if (Status s = plc::check_frame(where); !s.ok()) return s;
     }
     const plc::Host& host = *context->host;
-    if (Status s = plc::check_mesh_input(xyz, vertex_count, abc, face_count, host.schedule);
-        !s.ok()) {
-      return s;
-    }
+    const plc::MeshArrays given = plc::mesh_arrays(xyz, vertex_count, abc, face_count);
+    if (Status s = plc::check_mesh_input(given, host.schedule); !s.ok()) return s;
     auto made = std::make_unique<plc_surface>();
     made->host = context->host;
     made->frame = plc::frame_of(where);
     made->parameters.struct_size = sizeof made->parameters;
     made->seconds.struct_size = sizeof made->seconds;
-    const plc::VoxelMesh mesh =
-        plc::in_voxels(made->frame.to(space), xyz, vertex_count, abc, face_count);
-    if (Status s = plc::import_mesh(mesh.xyz.data(), vertex_count, mesh.abc.data(), face_count,
-                                    host.schedule, made->mesh, xyz);
-        !s.ok()) {
-      return s;
-    }
+    const plc::VoxelMesh mesh = plc::in_voxels(made->frame.to(space), given);
+    const plc::MeshArrays in_voxels{mesh.xyz.data(), given.vertex_count, mesh.abc.data(),
+                                    given.face_count};
+    if (Status s = plc::import_mesh(in_voxels, host.schedule, made->mesh, xyz); !s.ok()) return s;
     *surface = made.release();
     return {};
   });

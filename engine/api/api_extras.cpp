@@ -202,27 +202,27 @@ void take_extras(const plc_extras& e, const Frame& frame, RecoverySpec& spec) {
   }
   spec.user.cosines = cosines_of(frame);
   if (spec.start.init != Init::kMesh) return;
-  VoxelMesh mesh =
-      in_voxels(to_space, e.mesh_xyz, e.mesh_vertex_count, e.mesh_abc, e.mesh_face_count);
+  VoxelMesh mesh = in_voxels(
+      to_space, mesh_arrays(e.mesh_xyz, e.mesh_vertex_count, e.mesh_abc, e.mesh_face_count));
   spec.start.xyz = std::move(mesh.xyz);
   spec.start.as_given.assign(e.mesh_xyz, e.mesh_xyz + 3 * e.mesh_vertex_count);
   spec.start.abc = std::move(mesh.abc);
 }
 
-VoxelMesh in_voxels(const Affine& to_space, const double* xyz, int64_t vertex_count,
-                    const uint32_t* abc, int64_t face_count) {
+VoxelMesh in_voxels(const Affine& to_space, const MeshArrays& mesh) {
   const Affine to_voxel = to_space.inverse();
-  VoxelMesh mesh;
-  mesh.xyz.resize(3 * static_cast<size_t>(vertex_count));
-  for (size_t v = 0; v < mesh.xyz.size(); v += 3) {
-    const auto p = to_voxel.point({xyz[v], xyz[v + 1], xyz[v + 2]});
-    std::copy(p.begin(), p.end(), mesh.xyz.begin() + static_cast<std::ptrdiff_t>(v));
+  VoxelMesh out;
+  out.xyz.reserve(3 * mesh.vertex_count);
+  for (size_t v = 0; v < mesh.vertex_count; ++v) {
+    const double* given = mesh.point(v);
+    const auto p = to_voxel.point({given[0], given[1], given[2]});
+    out.xyz.insert(out.xyz.end(), p.begin(), p.end());
   }
-  mesh.abc.assign(abc, abc + 3 * face_count);
+  out.abc.assign(mesh.abc, mesh.face(mesh.face_count));
   if (to_space.mirrors()) {
-    for (size_t f = 0; f < mesh.abc.size(); f += 3) std::swap(mesh.abc[f + 1], mesh.abc[f + 2]);
+    for (size_t f = 0; f < out.abc.size(); f += 3) std::swap(out.abc[f + 1], out.abc[f + 2]);
   }
-  return mesh;
+  return out;
 }
 
 }  // namespace plc

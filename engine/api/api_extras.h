@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/api/frame.h"
+#include "engine/base/mesh_arrays.h"
 #include "engine/pellicle.h"
 #include "engine/recover/recovery.h"
 #include "pyramid/memory.h"
@@ -26,7 +27,6 @@ struct VoxelMesh {
   Vector<double> xyz;
   Vector<uint32_t> abc;
 };
-VoxelMesh in_voxels(const Affine& to_space, const double* xyz, int64_t vertex_count,
-                    const uint32_t* abc, int64_t face_count);
+VoxelMesh in_voxels(const Affine& to_space, const MeshArrays& mesh);
 
 }  // namespace plc

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/api/handles.h"
+#include "engine/base/mesh_arrays.h"
 #include "engine/measure/curvature.h"
 #include "engine/measure/geodesic.h"
 #include "engine/measure/mesh_input.h"
@@ -48,12 +49,9 @@ plc_status plc_mesh_component_measures(plc_context* context, const double* xyz,
       return plc::bad_argument("components: must not be NULL, capacity must not be negative");
     }
     if (count == nullptr) return plc::bad_argument("count: must not be NULL");
-    plc::Status status =
-        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->host->schedule);
-    if (!status.ok()) return status;
-    const plc::ShapeMeasures shape =
-        plc::shape_measures(xyz, static_cast<size_t>(vertex_count), abc,
-                            static_cast<size_t>(face_count), context->host->schedule);
+    const plc::MeshArrays mesh = plc::mesh_arrays(xyz, vertex_count, abc, face_count);
+    if (plc::Status s = plc::check_mesh_input(mesh, context->host->schedule); !s.ok()) return s;
+    const plc::ShapeMeasures shape = plc::shape_measures(mesh, context->host->schedule);
     if (whole != nullptr) plc::give_struct(record_of(shape.whole), whole);
     *count = static_cast<int64_t>(shape.components.size());
     std::transform(shape.components.data(),
@@ -67,12 +65,9 @@ plc_status plc_mesh_curvature(plc_context* context, const double* xyz, int64_t v
                               const uint32_t* abc, int64_t face_count, double* mean,
                               double* gaussian, double* area) {
   return plc::guarded(context, [&]() -> plc::Status {
-    plc::Status status =
-        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->host->schedule);
-    if (!status.ok()) return status;
-    plc::vertex_curvature(xyz, static_cast<size_t>(vertex_count), abc,
-                          static_cast<size_t>(face_count), context->host->schedule, mean, gaussian,
-                          area);
+    const plc::MeshArrays mesh = plc::mesh_arrays(xyz, vertex_count, abc, face_count);
+    if (plc::Status s = plc::check_mesh_input(mesh, context->host->schedule); !s.ok()) return s;
+    plc::vertex_curvature(mesh, context->host->schedule, mean, gaussian, area);
     return {};
   });
 }
@@ -87,11 +82,9 @@ plc_status plc_mesh_nearest_vertex(plc_context* context, const double* xyz, int6
     if (!std::all_of(point, point + 3, [](double x) { return std::isfinite(x); })) {
       return plc::bad_argument("point: expected finite numbers");
     }
-    plc::Status status =
-        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->host->schedule);
-    if (!status.ok()) return status;
-    const size_t nearest = plc::nearest_vertex(xyz, static_cast<size_t>(vertex_count), abc,
-                                               static_cast<size_t>(face_count), point);
+    const plc::MeshArrays mesh = plc::mesh_arrays(xyz, vertex_count, abc, face_count);
+    if (plc::Status s = plc::check_mesh_input(mesh, context->host->schedule); !s.ok()) return s;
+    const size_t nearest = plc::nearest_vertex(mesh, point);
     *vertex = face_count == 0 ? -1 : static_cast<int64_t>(nearest);
     return {};
   });
@@ -102,17 +95,14 @@ plc_status plc_mesh_geodesic(plc_context* context, const double* xyz, int64_t ve
                              double* distance) {
   return plc::guarded(context, [&]() -> plc::Status {
     if (distance == nullptr) return plc::bad_argument("distance: must not be NULL");
-    plc::Status status =
-        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->host->schedule);
-    if (!status.ok()) return status;
+    const plc::MeshArrays mesh = plc::mesh_arrays(xyz, vertex_count, abc, face_count);
+    if (plc::Status s = plc::check_mesh_input(mesh, context->host->schedule); !s.ok()) return s;
     if (source < 0 || source >= vertex_count) {
       return {plc::ErrorCode::kInvalidArgument, "source: is vertex " + std::to_string(source) +
                                                     ", the mesh has " +
                                                     std::to_string(vertex_count)};
     }
-    plc::geodesic_distances(xyz, static_cast<size_t>(vertex_count), abc,
-                            static_cast<size_t>(face_count), static_cast<uint32_t>(source),
-                            context->host->schedule, distance);
+    plc::geodesic_distances(mesh, static_cast<uint32_t>(source), context->host->schedule, distance);
     return {};
   });
 }
@@ -125,20 +115,18 @@ plc_status plc_mesh_distance(plc_context* context, const double* xyz, int64_t ve
     if (summary != nullptr) {
       if (plc::Status s = plc::check_output(summary, "summary"); !s.ok()) return s;
     }
-    plc::Status status =
-        plc::check_mesh_input(xyz, vertex_count, abc, face_count, context->host->schedule);
-    if (!status.ok()) return status;
-    status = plc::check_mesh_input(other_xyz, other_vertex_count, other_abc, other_face_count,
-                                   context->host->schedule);
-    if (!status.ok()) return {status.code(), "the other mesh: " + status.message()};
+    const plc::MeshArrays mesh = plc::mesh_arrays(xyz, vertex_count, abc, face_count);
+    if (plc::Status s = plc::check_mesh_input(mesh, context->host->schedule); !s.ok()) return s;
+    const plc::MeshArrays other =
+        plc::mesh_arrays(other_xyz, other_vertex_count, other_abc, other_face_count);
+    if (plc::Status s = plc::check_mesh_input(other, context->host->schedule); !s.ok()) {
+      return {s.code(), "the other mesh: " + s.message()};
+    }
     if (other_face_count == 0) {
       return {plc::ErrorCode::kInvalidData, "the other mesh: has no face"};
     }
-    const plc::SurfaceDistances d = plc::surface_distances(
-        {xyz, static_cast<size_t>(vertex_count), abc, static_cast<size_t>(face_count)},
-        {other_xyz, static_cast<size_t>(other_vertex_count), other_abc,
-         static_cast<size_t>(other_face_count)},
-        context->host->schedule, distance);
+    const plc::SurfaceDistances d =
+        plc::surface_distances(mesh, other, context->host->schedule, distance);
     const plc_distances out{sizeof out, d.mean, d.rms, d.max, d.vertex_mean, d.vertex_max};
     if (summary != nullptr) plc::give_struct(out, summary);
     return {};

@@ -7,6 +7,7 @@
 
 #include "engine/api/api_check.h"
 #include "engine/base/double3.h"
+#include "engine/base/mesh_arrays.h"
 #include "engine/measure/curvature.h"
 #include "engine/mesh/state_hash.h"
 #include "engine/recover/frozen_sites.h"
@@ -135,6 +136,8 @@ struct PlainMesh {
   Buffer<double> xyz;
   Buffer<uint32_t> abc;
   size_t vertices = 0, faces = 0;
+
+  MeshArrays arrays() const { return {xyz.data(), vertices, abc.data(), faces}; }
 };
 PlainMesh plain_mesh(const plc_surface& surface, plc_space space) {
   PlainMesh mesh;
@@ -156,8 +159,7 @@ void write_curvature(const plc_surface& surface, plc_space space, plc_scalar sca
   double* mean = scalar == PLC_SCALAR_MEAN_CURVATURE ? wanted.data() : nullptr;
   double* gaussian = scalar == PLC_SCALAR_GAUSSIAN_CURVATURE ? wanted.data() : nullptr;
   double* area = scalar == PLC_SCALAR_AREA ? wanted.data() : nullptr;
-  vertex_curvature(mesh.xyz.data(), mesh.vertices, mesh.abc.data(), mesh.faces, executor, mean,
-                   gaussian, area);
+  vertex_curvature(mesh.arrays(), executor, mean, gaussian, area);
   for (const double x : wanted) *values++ = static_cast<float>(x);
 }
 
@@ -322,10 +324,8 @@ plc_status plc_surface_measure(plc_context* context, const plc_surface* surface,
     if (Status s = plc::check_surface(surface, space); !s.ok()) return s;
     if (Status s = plc::check_output(measures, "measures"); !s.ok()) return s;
     const plc::PlainMesh mesh = plc::plain_mesh(*surface, space);
-    plc::give_struct(
-        plc::record_of(plc::surface_measures(mesh.xyz.data(), mesh.vertices, mesh.abc.data(),
-                                             mesh.faces, context->host->schedule)),
-        measures);
+    plc::give_struct(plc::record_of(plc::surface_measures(mesh.arrays(), context->host->schedule)),
+                     measures);
     return {};
   });
 }
@@ -336,9 +336,7 @@ plc_status plc_surface_check(plc_context* context, const plc_surface* surface, p
     if (Status s = plc::check_output(check, "check"); !s.ok()) return s;
     const plc::PlainMesh mesh = plc::plain_mesh(*surface, PLC_SPACE_LPS);
     plc::MeshCheck found;
-    Status s =
-        plc::check_mesh(mesh.xyz.data(), static_cast<int64_t>(mesh.vertices), mesh.abc.data(),
-                        static_cast<int64_t>(mesh.faces), context->host->schedule, found);
+    Status s = plc::check_mesh(mesh.arrays(), context->host->schedule, found);
     if (s.ok()) plc::give_struct(plc::record_of(found), check);
     return s;
   });

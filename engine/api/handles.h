@@ -13,6 +13,7 @@
 
 #include "engine/api/frame.h"
 #include "engine/base/float_environment.h"
+#include "engine/base/mesh_arrays.h"
 #include "engine/base/schedule.h"
 #include "engine/mesh/face_rings.h"
 #include "engine/mesh/mesh.h"
@@ -143,6 +144,12 @@ plc_status guarded(plc_context* context, Body&& body) {
                                    [&](std::string_view line) { context->message.assign(line); });
   if (status == PLC_OUT_OF_MEMORY) tell_refusal(host->memory, context->message);
   return status;
+}
+
+// Counts below 0 become impossible ones, which check_mesh_input() tells as they were.
+inline MeshArrays mesh_arrays(const double* xyz, int64_t vertex_count, const uint32_t* abc,
+                              int64_t face_count) {
+  return {xyz, static_cast<size_t>(vertex_count), abc, static_cast<size_t>(face_count)};
 }
 
 // Of a struct that a host fills in: what its version of the header has, the rest at its default.

@@ -18,26 +18,25 @@ constexpr size_t kWave = 32;
 
 }  // namespace
 
-Vector<uint32_t> proper_faces(const double* xyz, const uint32_t* abc, size_t face_count,
-                              const Executor& executor) {
-  std::vector<Vector<uint32_t>> kept(block_count(face_count, kFaceBlock));
-  run_blocks(executor, face_count, kFaceBlock, [&](size_t block, size_t begin, size_t end) {
+Vector<uint32_t> proper_faces(const MeshArrays& mesh, const Executor& executor) {
+  std::vector<Vector<uint32_t>> kept(block_count(mesh.face_count, kFaceBlock));
+  run_blocks(executor, mesh.face_count, kFaceBlock, [&](size_t block, size_t begin, size_t end) {
     for (size_t f = begin; f < end; ++f) {
-      const Triangle t = make_triangle(xyz, abc + 3 * f);
+      const Triangle t = make_triangle(mesh.xyz, mesh.face(f));
       if (!collinear(t.corner[0], t.corner[1], t.corner[2])) {
         kept[block].push_back(static_cast<uint32_t>(f));
       }
     }
   });
   Vector<uint32_t> faces;
-  faces.reserve(face_count);
+  faces.reserve(mesh.face_count);
   for (const Vector<uint32_t>& part : kept) {
     faces.insert(faces.end(), part.begin(), part.end());
   }
   return faces;
 }
 
-Vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc, const FaceTree& tree,
+Vector<FacePair> self_intersections(const MeshArrays& mesh, const FaceTree& tree,
                                     const Executor& executor, size_t limit) {
   const size_t tasks = block_count(tree.leaf_count(), kLeafBlock);
   const size_t wave = limit == std::numeric_limits<size_t>::max() ? tasks : kWave;
@@ -51,10 +50,8 @@ Vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc, cons
       const size_t end = std::min(begin + kLeafBlock, tree.leaf_count());
       for (size_t leaf = begin; leaf < end && pairs.size() < limit; ++leaf) {
         tree.overlapping_pairs(leaf, [&](uint32_t f, uint32_t g) {
-          const uint32_t *ids_f = abc + 3 * static_cast<size_t>(f),
-                         *ids_g = abc + 3 * static_cast<size_t>(g);
-          if (pairs.size() < limit &&
-              triangles_intersect(make_triangle(xyz, ids_f), make_triangle(xyz, ids_g))) {
+          if (pairs.size() < limit && triangles_intersect(make_triangle(mesh.xyz, mesh.face(f)),
+                                                          make_triangle(mesh.xyz, mesh.face(g)))) {
             pairs.emplace_back(std::min(f, g), std::max(f, g));
           }
         });
@@ -69,12 +66,12 @@ Vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc, cons
   return all;
 }
 
-Vector<FacePair> self_intersections(const double* xyz, const uint32_t* abc, size_t face_count,
-                                    const Executor& executor, size_t limit) {
-  const Vector<uint32_t> faces = proper_faces(xyz, abc, face_count, executor);
+Vector<FacePair> self_intersections(const MeshArrays& mesh, const Executor& executor,
+                                    size_t limit) {
+  const Vector<uint32_t> faces = proper_faces(mesh, executor);
   FaceTree tree;
-  tree.build(xyz, abc, faces.data(), faces.size(), executor);
-  return self_intersections(xyz, abc, tree, executor, limit);
+  tree.build(mesh.xyz, mesh.abc, faces.data(), faces.size(), executor);
+  return self_intersections(mesh, tree, executor, limit);
 }
 
 }  // namespace plc

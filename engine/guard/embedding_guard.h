@@ -26,10 +26,10 @@ struct Proposal {
   // What becomes of the rings of the vertices that stay and have new faces.
   struct RingChange {
     uint32_t vertex;
-    uint32_t neighbor = ~0U;  // goes; where `keeps`, it stays and the place comes after it
-    Vec3 place{};             // comes
+    uint32_t neighbor = ~0U;  // leaves the ring; where `keeps`, it stays, and `place` follows it
+    Vec3 place{};             // enters the ring, in place of `neighbor` where that leaves
     bool keeps = false;
-    uint32_t gone = ~0U;  // another neighbour that goes
+    uint32_t gone = ~0U;  // another neighbour that leaves
   };
   // Up to kMaxRings; where some are not known, more is tested one by one.
   Vector<RingChange> rings;

@@ -26,12 +26,12 @@ class MotionGuard {
   // blocks: of kRingLanes vertices, with all that have moved and all their neighbours. Finds where
   // the surface folds now, against the normals of the movement's start.
   void find_folds(const Vector<uint32_t>& blocks);
-  // The vertices around which it did not fold before that; ascending.
+  // Of the vertices around which that call found folds, those without one before it; ascending.
   const Vector<uint32_t>& newly_folded() const { return newly_folded_; }
-  // due: the vertices whose risk has been looked at anew; at_risk: those of all that it was found
+  // due: the vertices whose risk has been looked at anew; at_risk: all vertices that it was found
   // for (Surroundings). The others keep theirs.
   void assess(const Vector<uint32_t>& due, const Vector<uint32_t>& at_risk);
-  // Whatever it was, v is at risk.
+  // Marks v as at risk, whatever its risk was.
   void suspect(uint32_t v) { risk_[v] = kNearRisk; }
   // `before`: the positions before the movement, by id. The hash learns of the vertices that go
   // back, which are appended to `back`. Returns how many went back.

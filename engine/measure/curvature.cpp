@@ -45,11 +45,10 @@ void add_face(const double* a, const double* b, const double* c, Star& star) {
 }
 
 // Vertices of edges that have not two faces: those are all 1.
-Vector<uint8_t> border_vertices(const uint32_t* abc, size_t face_count, size_t vertex_count,
-                                const Executor& executor) {
-  Vector<uint8_t> border(vertex_count, 0);
-  const EdgeTable edges(abc, face_count, vertex_count, executor);
-  edges.visit(0, vertex_count,
+Vector<uint8_t> border_vertices(const MeshArrays& mesh, const Executor& executor) {
+  Vector<uint8_t> border(mesh.vertex_count, 0);
+  const EdgeTable edges(mesh.abc, mesh.face_count, mesh.vertex_count, executor);
+  edges.visit(0, mesh.vertex_count,
               [&](uint32_t low, uint32_t high, const EdgeUse* use, const EdgeUse* end) {
                 if (end - use != 2) border[low] = border[high] = 1;
               });
@@ -58,18 +57,17 @@ Vector<uint8_t> border_vertices(const uint32_t* abc, size_t face_count, size_t v
 
 }  // namespace
 
-void vertex_curvature(const double* xyz, size_t vertex_count, const uint32_t* abc,
-                      size_t face_count, const Executor& executor, double* mean, double* gaussian,
-                      double* area) {
+void vertex_curvature(const MeshArrays& mesh, const Executor& executor, double* mean,
+                      double* gaussian, double* area) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const VertexCorners corners(abc, face_count, vertex_count);
-  const Vector<uint8_t> border = border_vertices(abc, face_count, vertex_count, executor);
-  const auto point = [&](uint32_t corner) { return xyz + 3 * static_cast<size_t>(abc[corner]); };
-  run_blocks(executor, vertex_count, kVertexBlock, [&](size_t, size_t begin, size_t end) {
+  const VertexCorners corners(mesh.abc, mesh.face_count, mesh.vertex_count);
+  const Vector<uint8_t> border = border_vertices(mesh, executor);
+  run_blocks(executor, mesh.vertex_count, kVertexBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t v = begin; v < end; ++v) {
       Star star;
       for (const uint32_t c : corners.of(v)) {
-        add_face(point(c), point(next_corner(c)), point(previous_corner(c)), star);
+        add_face(mesh.corner(c), mesh.corner(next_corner(c)), mesh.corner(previous_corner(c)),
+                 star);
       }
       const double size = length(star.normal);
       const bool defined = border[v] == 0 && star.area > 0 && size > 0;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/base/mesh_arrays.h"
 #include "pyramid/executor.h"
 
 namespace plc {
@@ -16,10 +17,9 @@ namespace plc {
 // outward. What of the mean curvature normal is tangential is an error of the mesh, not curvature,
 // and is left out. A face of no area adds its angles alone.
 //
-// Input as measures.h has it. A gather per vertex, in the order of its corners: the same bits for
+// At most kMaxFaces faces. A gather per vertex, in the order of its corners: the same bits for
 // any executor.
-void vertex_curvature(const double* xyz, size_t vertex_count, const uint32_t* abc,
-                      size_t face_count, const Executor& executor, double* mean, double* gaussian,
-                      double* area);
+void vertex_curvature(const MeshArrays& mesh, const Executor& executor, double* mean,
+                      double* gaussian, double* area);
 
 }  // namespace plc

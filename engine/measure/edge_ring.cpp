@@ -36,25 +36,23 @@ size_t walk(const uint32_t* abc, const EdgeRings& edges, uint32_t start, uint32_
   }
 }
 
-bool may_bend(const double* xyz, const uint32_t* abc, std::span<const uint32_t> corners,
-              const EdgeRings& edges) {
-  const auto point = [&](uint32_t c) { return xyz + 3 * static_cast<size_t>(abc[c]); };
+bool may_bend(const MeshArrays& mesh, std::span<const uint32_t> corners, const EdgeRings& edges) {
   double angle = 0;
   for (const uint32_t c : corners) {
     for (const uint32_t side : {next_corner(c), previous_corner(c)}) {
       if (edges.across(edges.across(side)) != side) return true;  // an edge of several faces
     }
-    const Double3 u = difference(point(next_corner(c)), point(c));
-    const Double3 v = difference(point(previous_corner(c)), point(c));
+    const Double3 u = difference(mesh.corner(next_corner(c)), mesh.corner(c));
+    const Double3 v = difference(mesh.corner(previous_corner(c)), mesh.corner(c));
     const double twice = length(cross(u, v));
     if (!(twice > 0)) return true;
     angle += std::atan2(twice, dot(u, v));
   }
   bool closed = false;
   const uint32_t start = corners[0];
-  size_t faces = 1 + walk(abc, edges, start, previous_corner(start), closed);
+  size_t faces = 1 + walk(mesh.abc, edges, start, previous_corner(start), closed);
   bool unused = false;
-  if (!closed) faces += walk(abc, edges, start, next_corner(start), unused);
+  if (!closed) faces += walk(mesh.abc, edges, start, next_corner(start), unused);
   return faces != corners.size() || angle > (closed ? 2 : 1) * kPi * (1 + kAngleMargin);
 }
 
@@ -73,11 +71,11 @@ EdgeRings::EdgeRings(const uint32_t* abc, size_t face_count, size_t vertex_count
   });
 }
 
-Vector<uint8_t> bending_vertices(const double* xyz, const uint32_t* abc,
-                                 const VertexCorners& corners, const EdgeRings& edges) {
+Vector<uint8_t> bending_vertices(const MeshArrays& mesh, const VertexCorners& corners,
+                                 const EdgeRings& edges) {
   Vector<uint8_t> bends(corners.vertex_count(), 0);
   for (size_t v = 0; v < bends.size(); ++v) {
-    if (!corners.of(v).empty()) bends[v] = may_bend(xyz, abc, corners.of(v), edges) ? 1 : 0;
+    if (!corners.of(v).empty()) bends[v] = may_bend(mesh, corners.of(v), edges) ? 1 : 0;
   }
   return bends;
 }

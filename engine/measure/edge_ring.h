@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/measure/vertex_corners.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
@@ -25,7 +26,7 @@ class EdgeRings {
 
 // 0 for vertices that no shortest path needs to pass through: those whose faces are one closed fan
 // of at most 360 degrees or one open fan of at most 180. 1 for others, and at faces of no area.
-Vector<uint8_t> bending_vertices(const double* xyz, const uint32_t* abc,
-                                 const VertexCorners& corners, const EdgeRings& edges);
+Vector<uint8_t> bending_vertices(const MeshArrays& mesh, const VertexCorners& corners,
+                                 const EdgeRings& edges);
 
 }  // namespace plc

@@ -65,18 +65,15 @@ Frame mirrored(const Frame& f) {
 
 class Propagation {
  public:
-  Propagation(const double* xyz, const uint32_t* abc, size_t face_count, size_t vertex_count,
-              const Executor& executor)
-      : xyz_(xyz),
-        abc_(abc),
-        face_count_(face_count),
-        crossings_left_(kCrossings * static_cast<double>(face_count) *
-                        static_cast<double>(face_count)),
-        distance_(vertex_count, kInfinity),
-        corners_(abc, face_count, vertex_count),
-        edges_(abc, face_count, vertex_count, executor),
-        bends_(bending_vertices(xyz, abc, corners_, edges_)),
-        best_(3 * face_count, Best{kInfinity, 0}) {}
+  Propagation(const MeshArrays& mesh, const Executor& executor)
+      : mesh_(mesh),
+        crossings_left_(kCrossings * static_cast<double>(mesh.face_count) *
+                        static_cast<double>(mesh.face_count)),
+        distance_(mesh.vertex_count, kInfinity),
+        corners_(mesh.abc, mesh.face_count, mesh.vertex_count),
+        edges_(mesh.abc, mesh.face_count, mesh.vertex_count, executor),
+        bends_(bending_vertices(mesh, corners_, edges_)),
+        best_(3 * mesh.face_count, Best{kInfinity, 0}) {}
 
   const Vector<double>& run(uint32_t source) {
     bends_[source] = 1;
@@ -112,9 +109,7 @@ class Propagation {
     double distance, x;
   };
 
-  const double* point(uint32_t corner) const {
-    return xyz_ + 3 * static_cast<size_t>(abc_[corner]);
-  }
+  const double* point(uint32_t corner) const { return mesh_.corner(corner); }
   double edge_length(uint32_t c, uint32_t d) const {
     return length(difference(point(c), point(d)));
   }
@@ -130,8 +125,8 @@ class Propagation {
     const double sigma = distance_[vertex];
     for (const uint32_t c : corners_.of(vertex)) {
       const uint32_t next = next_corner(c), previous = previous_corner(c);
-      reach(abc_[next], sigma + edge_length(c, next));
-      reach(abc_[previous], sigma + edge_length(c, previous));
+      reach(mesh_.abc[next], sigma + edge_length(c, next));
+      reach(mesh_.abc[previous], sigma + edge_length(c, previous));
       const Frame f = frame_of(c);
       if (f.length > 0) emit({0, f.length, f.x, f.y, sigma, c, vertex, 1}, f.length);
     }
@@ -149,9 +144,9 @@ class Propagation {
   void emit(const Window& w, double length) {
     if (!(w.depth > 0) || !(w.high - w.low > kNarrow * length)) return;
     if (is_beaten(w, length)) return;
-    const uint32_t from = abc_[next_corner(w.corner)];
+    const uint32_t from = mesh_.abc[next_corner(w.corner)];
     for (uint32_t o = edges_.across(w.corner); o != w.corner; o = edges_.across(o)) {
-      Window out = abc_[next_corner(o)] == from ? w : mirrored(w, length);
+      Window out = mesh_.abc[next_corner(o)] == from ? w : mirrored(w, length);
       out.corner = o;
       push(out);
     }
@@ -159,8 +154,9 @@ class Propagation {
 
   // Whether each path of the window is longer than one along its edge from one of the ends.
   bool is_beaten(const Window& w, double length) const {
-    return distance_[abc_[next_corner(w.corner)]] + w.high < distance_at(w, w.high) ||
-           distance_[abc_[previous_corner(w.corner)]] + (length - w.low) < distance_at(w, w.low);
+    return distance_[mesh_.abc[next_corner(w.corner)]] + w.high < distance_at(w, w.high) ||
+           distance_[mesh_.abc[previous_corner(w.corner)]] + (length - w.low) <
+               distance_at(w, w.low);
   }
 
   void push(const Window& w) {
@@ -183,14 +179,14 @@ class Propagation {
     if (is_beaten(w, f.length)) return;
     // A shortest path comes through no face twice. Where lengths differ so much that the short ones
     // are lost in sums, nothing else ends a path that goes round and round a vertex.
-    if (w.faces >= face_count_) return;
+    if (w.faces >= mesh_.face_count) return;
     // Where the straight path to the apex crosses the edge, and the nearest place of the window.
     const double apex = w.x + (f.x - w.x) * (w.depth / (f.y + w.depth));
     const double through = std::clamp(apex, w.low, w.high);
     const bool covers = w.low < apex && apex < w.high;
     const double distance = covers ? w.sigma + hypotenuse(f.x - w.x, f.y + w.depth)
                                    : distance_at(w, through) + hypotenuse(f.x - through, f.y);
-    reach(abc_[w.corner], distance);
+    reach(mesh_.abc[w.corner], distance);
     bool left = w.low < apex, right = apex < w.high;
     // Paths of a farther window cross the path of the nearest one before they come to its far side.
     // Not so at an edge of more faces, over which the two may come from different ones.
@@ -224,7 +220,7 @@ class Propagation {
     // A path from the edge's far end to the near end of the interval crosses all paths of it.
     const uint32_t far = in_mirror ? next_corner(w.corner) : previous_corner(w.corner);
     const double meet_x = first * f.x, meet_y = first * f.y;
-    if (distance_[abc_[far]] + hypotenuse(f.length - meet_x, meet_y) <
+    if (distance_[mesh_.abc[far]] + hypotenuse(f.length - meet_x, meet_y) <
         w.sigma + hypotenuse(meet_x - w.x, meet_y + w.depth)) {
       return;
     }
@@ -241,9 +237,7 @@ class Propagation {
     emit(in_mirror ? out : mirrored(out, edge), edge);
   }
 
-  const double* xyz_;
-  const uint32_t* abc_;
-  size_t face_count_;
+  MeshArrays mesh_;
   double crossings_left_;
   Vector<double> distance_;
   VertexCorners corners_;
@@ -257,24 +251,22 @@ class Propagation {
 
 }  // namespace
 
-void geodesic_distances(const double* xyz, size_t vertex_count, const uint32_t* abc,
-                        size_t face_count, uint32_t source, const Executor& executor,
+void geodesic_distances(const MeshArrays& mesh, uint32_t source, const Executor& executor,
                         double* distance) {
-  Propagation propagation(xyz, abc, face_count, vertex_count, executor);
+  Propagation propagation(mesh, executor);
   const Vector<double>& distances = propagation.run(source);
   std::copy(distances.begin(), distances.end(), distance);
 }
 
-size_t nearest_vertex(const double* xyz, size_t vertex_count, const uint32_t* abc,
-                      size_t face_count, const double* point) {
-  size_t nearest = vertex_count;
+size_t nearest_vertex(const MeshArrays& mesh, const double* point) {
+  size_t nearest = mesh.vertex_count;
   double least = kInfinity;
-  for (size_t i = 0; i < 3 * face_count; ++i) {
-    const Double3 off = difference(xyz + 3 * static_cast<size_t>(abc[i]), point);
+  for (size_t c = 0; c < 3 * mesh.face_count; ++c) {
+    const Double3 off = difference(mesh.corner(c), point);
     const double squared = dot(off, off);
-    if (squared > least || (squared == least && abc[i] >= nearest)) continue;
+    if (squared > least || (squared == least && mesh.abc[c] >= nearest)) continue;
     least = squared;
-    nearest = abc[i];
+    nearest = mesh.abc[c];
   }
   return nearest;
 }

@@ -18,23 +18,22 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/base/mesh_arrays.h"
 #include "pyramid/executor.h"
 
 namespace plc {
 
-// Input as measures.h has it; source is a vertex. distance: one value per vertex, infinity where no
+// At most kMaxFaces faces; source is a vertex. distance: one value per vertex, infinity where no
 // path leads. Paths may cross an edge of any number of faces from each to each other one. Equal
 // distances are met in the order of vertices and windows: the same bits always; the executor is
 // used to find the edges alone. 72 bytes per window that waits, of which there were fewer
 // than vertices on every mesh tried, and 24 per corner. The bone of a head CT, 98,608 vertices,
 // took 4 s, a sphere of 65,538 as well.
-void geodesic_distances(const double* xyz, size_t vertex_count, const uint32_t* abc,
-                        size_t face_count, uint32_t source, const Executor& executor,
+void geodesic_distances(const MeshArrays& mesh, uint32_t source, const Executor& executor,
                         double* distance);
 
 // The vertex of a face nearest to the point (three values), the first of equal ones; vertex_count
 // where there is no face.
-size_t nearest_vertex(const double* xyz, size_t vertex_count, const uint32_t* abc,
-                      size_t face_count, const double* point);
+size_t nearest_vertex(const MeshArrays& mesh, const double* point);
 
 }  // namespace plc

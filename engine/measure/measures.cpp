@@ -20,19 +20,18 @@ struct FaceMeasures {
 }  // namespace
 
 template <typename Real>
-Vector<ComponentMeasures> component_measures(const Real* xyz, const uint32_t* abc,
+Vector<ComponentMeasures> component_measures(const MeshArraysOf<Real>& mesh,
                                              const MeshTopology& topology,
                                              const Executor& executor) {
   const size_t face_count = topology.component.size();
-  const auto corner = [&](size_t c) { return xyz + 3 * static_cast<size_t>(abc[c]); };
   Buffer<FaceMeasures> faces;
   faces.resize_uninitialized(face_count);
   run_blocks(executor, face_count, kFaceBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t f = begin; f < end; ++f) {
       const size_t first = topology.components[topology.component[f]].first_face;
-      const Real *a = corner(3 * f), *b = corner(3 * f + 1), *c = corner(3 * f + 2);
+      const Real *a = mesh.corner(3 * f), *b = mesh.corner(3 * f + 1), *c = mesh.corner(3 * f + 2);
       const Double3 normal = cross(difference(b, a), difference(c, a));
-      faces[f] = {length(normal), dot(normal, difference(a, corner(3 * first)))};
+      faces[f] = {length(normal), dot(normal, difference(a, mesh.corner(3 * first)))};
     }
   });
   Vector<ComponentMeasures> measures;
@@ -58,12 +57,10 @@ Vector<ComponentMeasures> component_measures(const Real* xyz, const uint32_t* ab
 }
 
 template <typename Real>
-Vector<ComponentMeasures> component_measures(const Real* xyz, size_t vertex_count,
-                                             const uint32_t* abc, size_t face_count,
+Vector<ComponentMeasures> component_measures(const MeshArraysOf<Real>& mesh,
                                              const Executor& executor) {
-  const EdgeTable edges(abc, face_count, vertex_count, executor);
-  return component_measures(xyz, abc, mesh_topology(abc, face_count, vertex_count, edges),
-                            executor);
+  return component_measures(
+      mesh, mesh_topology(mesh.abc, mesh.face_count, mesh.vertex_count, executor), executor);
 }
 
 SurfaceMeasures total_measures(size_t vertex_count, const MeshTopology& topology,
@@ -82,20 +79,18 @@ SurfaceMeasures total_measures(size_t vertex_count, const MeshTopology& topology
 }
 
 template <typename Real>
-SurfaceMeasures surface_measures(const Real* xyz, size_t vertex_count, const uint32_t* abc,
-                                 size_t face_count, const Executor& executor) {
-  const EdgeTable edges(abc, face_count, vertex_count, executor);
-  const MeshTopology topology = mesh_topology(abc, face_count, vertex_count, edges);
-  return total_measures(vertex_count, topology, component_measures(xyz, abc, topology, executor));
+SurfaceMeasures surface_measures(const MeshArraysOf<Real>& mesh, const Executor& executor) {
+  const MeshTopology topology =
+      mesh_topology(mesh.abc, mesh.face_count, mesh.vertex_count, executor);
+  return total_measures(mesh.vertex_count, topology, component_measures(mesh, topology, executor));
 }
 
 #define PLC_INSTANTIATE(Real)                                                                  \
-  template Vector<ComponentMeasures> component_measures(const Real*, const uint32_t*,          \
+  template Vector<ComponentMeasures> component_measures(const MeshArraysOf<Real>&,             \
                                                         const MeshTopology&, const Executor&); \
-  template Vector<ComponentMeasures> component_measures(const Real*, size_t, const uint32_t*,  \
-                                                        size_t, const Executor&);              \
-  template SurfaceMeasures surface_measures(const Real*, size_t, const uint32_t*, size_t,      \
-                                            const Executor&);
+  template Vector<ComponentMeasures> component_measures(const MeshArraysOf<Real>&,             \
+                                                        const Executor&);                      \
+  template SurfaceMeasures surface_measures(const MeshArraysOf<Real>&, const Executor&);
 PLC_INSTANTIATE(float)
 PLC_INSTANTIATE(double)
 #undef PLC_INSTANTIATE

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/measure/mesh_topology.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
@@ -26,19 +27,17 @@ struct SurfaceMeasures {
   double area = 0, volume = 0;
 };
 
-// xyz: three finite values per vertex; abc: three indices below vertex_count per face; at most
-// kMaxFaces faces. Real is float or double; sums are of doubles, in an order that depends on the
-// faces only: the same bits for any executor. The volume of each component is taken from a corner
-// of it, so that a mesh far from the origin, or small beside others, loses no digits.
+// At most kMaxFaces faces. Real is float or double; sums are of doubles, in an order that depends
+// on the faces only: the same bits for any executor. The volume of each component is taken from a
+// corner of it, so that a mesh far from the origin, or small beside others, loses no digits.
 //
 // All components, the largest area first, ties by number.
 template <typename Real>
-Vector<ComponentMeasures> component_measures(const Real* xyz, const uint32_t* abc,
+Vector<ComponentMeasures> component_measures(const MeshArraysOf<Real>& mesh,
                                              const MeshTopology& topology,
                                              const Executor& executor);
 template <typename Real>
-Vector<ComponentMeasures> component_measures(const Real* xyz, size_t vertex_count,
-                                             const uint32_t* abc, size_t face_count,
+Vector<ComponentMeasures> component_measures(const MeshArraysOf<Real>& mesh,
                                              const Executor& executor);
 
 // Of the whole: sums over the components in their order; genus -1 where one has none. vertices
@@ -46,7 +45,6 @@ Vector<ComponentMeasures> component_measures(const Real* xyz, size_t vertex_coun
 SurfaceMeasures total_measures(size_t vertex_count, const MeshTopology& topology,
                                const Vector<ComponentMeasures>& components);
 template <typename Real>
-SurfaceMeasures surface_measures(const Real* xyz, size_t vertex_count, const uint32_t* abc,
-                                 size_t face_count, const Executor& executor);
+SurfaceMeasures surface_measures(const MeshArraysOf<Real>& mesh, const Executor& executor);
 
 }  // namespace plc

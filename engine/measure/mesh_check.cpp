@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/base/blocks.h"
+#include "engine/base/mesh_arrays.h"
 #include "engine/exact/face_tree.h"
 #include "engine/exact/self_intersection.h"
 #include "engine/exact/triangle_intersection.h"
@@ -27,17 +28,16 @@ double distance(const double* p, const double* q) {
   return std::sqrt(x * x + y * y + z * z);
 }
 
-void measure_edges(const double* xyz, size_t vertex_count, const EdgeTable& edges,
-                   int64_t edge_count, const Executor& executor, MeshCheck& check) {
+void measure_edges(const MeshArrays& mesh, const EdgeTable& edges, int64_t edge_count,
+                   const Executor& executor, MeshCheck& check) {
   struct Part {
     double low = std::numeric_limits<double>::infinity(), high = 0, sum = 0;
   };
-  Vector<Part> parts(block_count(vertex_count, kBlock));
-  run_blocks(executor, vertex_count, kBlock, [&](size_t block, size_t begin, size_t end) {
+  Vector<Part> parts(block_count(mesh.vertex_count, kBlock));
+  run_blocks(executor, mesh.vertex_count, kBlock, [&](size_t block, size_t begin, size_t end) {
     Part part;
     edges.visit(begin, end, [&](uint32_t a, uint32_t b, const EdgeUse*, const EdgeUse*) {
-      const double length =
-          distance(xyz + 3 * static_cast<size_t>(a), xyz + 3 * static_cast<size_t>(b));
+      const double length = distance(mesh.point(a), mesh.point(b));
       part.low = std::min(part.low, length);
       part.high = std::max(part.high, length);
       part.sum += length;
@@ -70,18 +70,17 @@ double cotangent(const double* a, const double* b, const double* c) {
                  : std::numeric_limits<double>::infinity();
 }
 
-void measure_angles(const double* xyz, const uint32_t* abc, size_t face_count,
-                    const Executor& executor, MeshCheck& check) {
+void measure_angles(const MeshArrays& mesh, const Executor& executor, MeshCheck& check) {
   struct Part {
     double low = std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
   };
-  Vector<Part> parts(block_count(face_count, kBlock));
-  run_blocks(executor, face_count, kBlock, [&](size_t block, size_t begin, size_t end) {
+  Vector<Part> parts(block_count(mesh.face_count, kBlock));
+  run_blocks(executor, mesh.face_count, kBlock, [&](size_t block, size_t begin, size_t end) {
     Part part;
     for (size_t f = begin; f < end; ++f) {
       const double* p[3];
-      for (size_t k = 0; k < 3; ++k) p[k] = xyz + 3 * static_cast<size_t>(abc[3 * f + k]);
+      for (size_t k = 0; k < 3; ++k) p[k] = mesh.corner(3 * f + k);
       for (size_t k = 0; k < 3; ++k) {
         const double cot = cotangent(p[k], p[(k + 1) % 3], p[(k + 2) % 3]);
         part.low = std::min(part.low, cot);
@@ -95,20 +94,20 @@ void measure_angles(const double* xyz, const uint32_t* abc, size_t face_count,
     all.low = std::min(all.low, part.low);
     all.high = std::max(all.high, part.high);
   }
-  if (face_count == 0) return;
+  if (mesh.face_count == 0) return;
   check.min_angle = std::atan2(1, all.high) * kDegrees;
   check.max_angle = std::atan2(1, all.low) * kDegrees;
 }
 
 // By a hash table: open addressing, at most half full. -0 equals 0.
-int64_t count_duplicates(const double* xyz, size_t vertex_count) {
+int64_t count_duplicates(const MeshArrays& mesh) {
   constexpr uint32_t kEmpty = std::numeric_limits<uint32_t>::max();
   size_t capacity = 16;
-  while (capacity < 2 * vertex_count) capacity *= 2;
+  while (capacity < 2 * mesh.vertex_count) capacity *= 2;
   Vector<uint32_t> table(capacity, kEmpty);
   int64_t duplicates = 0;
-  for (size_t v = 0; v < vertex_count; ++v) {
-    const double* p = xyz + 3 * v;
+  for (size_t v = 0; v < mesh.vertex_count; ++v) {
+    const double* p = mesh.point(v);
     uint64_t hash = 0;
     for (size_t k = 0; k < 3; ++k) {
       const double x = p[k] + 0.0;  // -0 becomes 0
@@ -122,7 +121,7 @@ int64_t count_duplicates(const double* xyz, size_t vertex_count) {
         table[slot] = static_cast<uint32_t>(v);
         break;
       }
-      const double* q = xyz + 3 * static_cast<size_t>(table[slot]);
+      const double* q = mesh.point(table[slot]);
       if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) {
         ++duplicates;
         break;
@@ -146,10 +145,10 @@ void note_topology(const MeshTopology& t, MeshCheck& check) {
   check.valence_max = t.valence_max;
 }
 
-void find_intersections(const double* xyz, const uint32_t* abc, const FaceTree& tree,
-                        const Executor& executor, MeshCheck& check) {
+void find_intersections(const MeshArrays& mesh, const FaceTree& tree, const Executor& executor,
+                        MeshCheck& check) {
   const Vector<FacePair> pairs =
-      self_intersections(xyz, abc, tree, executor, static_cast<size_t>(kMaxIntersections));
+      self_intersections(mesh, tree, executor, static_cast<size_t>(kMaxIntersections));
   check.self_intersections = static_cast<int64_t>(pairs.size());
   check.first_intersection[0] = pairs.empty() ? -1 : static_cast<int64_t>(pairs[0].first);
   check.first_intersection[1] = pairs.empty() ? -1 : static_cast<int64_t>(pairs[0].second);
@@ -157,32 +156,27 @@ void find_intersections(const double* xyz, const uint32_t* abc, const FaceTree& 
 
 }  // namespace
 
-Status check_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
-                  const Executor& executor, MeshCheck& check) {
-  Status status = check_mesh_input(xyz, vertex_count, abc, face_count, executor);
-  if (!status.ok()) return status;
-  const auto vertices = static_cast<size_t>(vertex_count);
-  const auto faces = static_cast<size_t>(face_count);
+Status check_mesh(const MeshArrays& mesh, const Executor& executor, MeshCheck& check) {
+  if (Status s = check_mesh_input(mesh, executor); !s.ok()) return s;
 
   MeshCheck c;
-  const EdgeTable edges(abc, faces, vertices, executor);
-  const MeshTopology topology = mesh_topology(abc, faces, vertices, edges);
+  const EdgeTable edges(mesh.abc, mesh.face_count, mesh.vertex_count, executor);
+  const MeshTopology topology = mesh_topology(mesh.abc, mesh.face_count, mesh.vertex_count, edges);
   note_topology(topology, c);
-  const auto components = component_measures(xyz, abc, topology, executor);
-  c.measures = total_measures(vertices, topology, components);
-  measure_edges(xyz, vertices, edges, topology.edges, executor, c);
-  measure_angles(xyz, abc, faces, executor, c);
-  c.duplicate_points = count_duplicates(xyz, vertices);
+  const auto components = component_measures(mesh, topology, executor);
+  c.measures = total_measures(mesh.vertex_count, topology, components);
+  measure_edges(mesh, edges, topology.edges, executor, c);
+  measure_angles(mesh, executor, c);
+  c.duplicate_points = count_duplicates(mesh);
 
-  const Vector<uint32_t> proper = proper_faces(xyz, abc, faces, executor);
-  c.degenerate_faces = face_count - static_cast<int64_t>(proper.size());
+  const Vector<uint32_t> proper = proper_faces(mesh, executor);
+  c.degenerate_faces = static_cast<int64_t>(mesh.face_count - proper.size());
   FaceTree tree;
-  tree.build(xyz, abc, proper.data(), proper.size(), executor);
-  find_intersections(xyz, abc, tree, executor, c);
+  tree.build(mesh.xyz, mesh.abc, proper.data(), proper.size(), executor);
+  find_intersections(mesh, tree, executor, c);
   c.outward = -1;
-  if (faces != 0 && c.closed != 0 && c.oriented != 0) {
-    for (const ComponentSide& side :
-         component_sides(xyz, abc, topology, components, tree, executor)) {
+  if (mesh.face_count != 0 && c.closed != 0 && c.oriented != 0) {
+    for (const ComponentSide& side : component_sides(mesh, topology, components, tree, executor)) {
       c.wrongly_oriented_components += side.wrong ? 1 : 0;
     }
     c.outward = c.wrongly_oriented_components == 0 ? 1 : 0;

@@ -17,6 +17,7 @@
 #pragma once
 #include <cstdint>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/measure/measures.h"
 #include "pyramid/executor.h"
 #include "pyramid/status.h"
@@ -41,7 +42,6 @@ struct MeshCheck {
 
 // Input and errors as check_mesh_input() has them; check is unchanged after an error. The same bits
 // for any executor.
-Status check_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
-                  const Executor& executor, MeshCheck& check);
+Status check_mesh(const MeshArrays& mesh, const Executor& executor, MeshCheck& check);
 
 }  // namespace plc

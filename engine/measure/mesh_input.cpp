@@ -40,8 +40,9 @@ std::string text(double x) {
   return buffer;
 }
 
-Status check_counts(const double* xyz, int64_t vertex_count, const uint32_t* abc,
-                    int64_t face_count) {
+Status check_counts(const MeshArrays& mesh) {
+  const auto vertex_count = static_cast<int64_t>(mesh.vertex_count);
+  const auto face_count = static_cast<int64_t>(mesh.face_count);
   constexpr int64_t kMaxVertices = int64_t{1} << 32;
   const auto error = [](const std::string& message) {
     return Status(ErrorCode::kInvalidArgument, message);
@@ -54,41 +55,38 @@ Status check_counts(const double* xyz, int64_t vertex_count, const uint32_t* abc
     return error("the mesh has " + std::to_string(face_count) + " faces, expected 0 to " +
                  std::to_string(kMaxFaces));
   }
-  if (vertex_count > 0 && xyz == nullptr) return error("the mesh has vertices but no coordinates");
-  if (face_count > 0 && abc == nullptr) return error("the mesh has faces but no indices");
+  if (vertex_count > 0 && mesh.xyz == nullptr)
+    return error("the mesh has vertices but no coordinates");
+  if (face_count > 0 && mesh.abc == nullptr) return error("the mesh has faces but no indices");
   return {};
 }
 
-Status check_values(const double* xyz, size_t vertex_count, const uint32_t* abc, size_t face_count,
-                    const Executor& executor) {
-  const size_t value =
-      find_first(executor, 3 * vertex_count, [&](size_t i) { return !usable(xyz[i]); });
-  if (value != 3 * vertex_count) {
+Status check_values(const MeshArrays& mesh, const Executor& executor) {
+  const size_t values = 3 * mesh.vertex_count, corners = 3 * mesh.face_count;
+  const size_t value = find_first(executor, values, [&](size_t i) { return !usable(mesh.xyz[i]); });
+  if (value != values) {
     return {ErrorCode::kInvalidData,
             "vertex " + std::to_string(value / 3) + ": " + "xyz"[value % 3] + " is " +
-                text(xyz[value]) +
-                (std::isfinite(xyz[value]) ? ", expected 0 or a magnitude from 1e-70 to 1e+70"
-                                           : ", expected a finite number")};
+                text(mesh.xyz[value]) +
+                (std::isfinite(mesh.xyz[value]) ? ", expected 0 or a magnitude from 1e-70 to 1e+70"
+                                                : ", expected a finite number")};
   }
   const size_t corner =
-      find_first(executor, 3 * face_count, [&](size_t i) { return abc[i] >= vertex_count; });
-  if (corner != 3 * face_count) {
+      find_first(executor, corners, [&](size_t i) { return mesh.abc[i] >= mesh.vertex_count; });
+  if (corner != corners) {
     return {ErrorCode::kInvalidData,
             "face " + std::to_string(corner / 3) + ": corner " + std::to_string(corner % 3) +
-                " is vertex " + std::to_string(abc[corner]) + ", expected an index below " +
-                std::to_string(vertex_count)};
+                " is vertex " + std::to_string(mesh.abc[corner]) + ", expected an index below " +
+                std::to_string(mesh.vertex_count)};
   }
   return {};
 }
 
 }  // namespace
 
-Status check_mesh_input(const double* xyz, int64_t vertex_count, const uint32_t* abc,
-                        int64_t face_count, const Executor& executor) {
-  Status status = check_counts(xyz, vertex_count, abc, face_count);
-  if (!status.ok()) return status;
-  return check_values(xyz, static_cast<size_t>(vertex_count), abc, static_cast<size_t>(face_count),
-                      executor);
+Status check_mesh_input(const MeshArrays& mesh, const Executor& executor) {
+  Status status = check_counts(mesh);
+  return status.ok() ? check_values(mesh, executor) : status;
 }
 
 }  // namespace plc

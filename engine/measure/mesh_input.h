@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 
+#include "engine/base/mesh_arrays.h"
 #include "pyramid/executor.h"
 #include "pyramid/status.h"
 
@@ -12,10 +13,9 @@ namespace plc {
 inline constexpr double kCoordinateMin = 1e-70;
 inline constexpr double kCoordinateMax = 1e70;
 
-// xyz: three values per vertex; abc: three indices per face; NULL only where there are none. At
-// most 2^32 vertices and kMaxFaces faces. kInvalidArgument for impossible counts, kInvalidData for
-// a value or an index out of range, with a message that names the first one.
-Status check_mesh_input(const double* xyz, int64_t vertex_count, const uint32_t* abc,
-                        int64_t face_count, const Executor& executor);
+// Any arrays: at most 2^32 vertices and kMaxFaces faces are possible, NULL only where there are
+// none. kInvalidArgument for impossible counts (told as the signed numbers that callers give),
+// kInvalidData for a value or an index out of range, with a message that names the first one.
+Status check_mesh_input(const MeshArrays& mesh, const Executor& executor);
 
 }  // namespace plc

@@ -159,4 +159,10 @@ MeshTopology mesh_topology(const uint32_t* abc, size_t face_count, size_t vertex
   return m;
 }
 
+MeshTopology mesh_topology(const uint32_t* abc, size_t face_count, size_t vertex_count,
+                           const Executor& executor) {
+  return mesh_topology(abc, face_count, vertex_count,
+                       EdgeTable(abc, face_count, vertex_count, executor));
+}
+
 }  // namespace plc

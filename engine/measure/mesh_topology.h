@@ -73,5 +73,8 @@ struct MeshTopology {
 inline constexpr int64_t kMaxFaces = 1431655764;
 MeshTopology mesh_topology(const uint32_t* abc, size_t face_count, size_t vertex_count,
                            const EdgeTable& edges);
+// The same where the table of edges is wanted for nothing else.
+MeshTopology mesh_topology(const uint32_t* abc, size_t face_count, size_t vertex_count,
+                           const Executor& executor);
 
 }  // namespace plc

@@ -87,20 +87,21 @@ void set_shape(const Moments& m, const double* reference, ComponentShape& c) {
 }
 
 // Per component of the topology.
-Vector<Moments> component_moments(const double* xyz, const uint32_t* abc,
-                                  const MeshTopology& topology, const Executor& executor) {
+Vector<Moments> component_moments(const MeshArrays& mesh, const MeshTopology& topology,
+                                  const Executor& executor) {
   Vector<Moments> sums(topology.components.size());
   const size_t face_count = topology.component.size();
   Vector<Moments> parts(std::min(kChunk, face_count));
-  const auto corner = [&](size_t c) { return xyz + 3 * static_cast<size_t>(abc[c]); };
   for (size_t chunk = 0; chunk < face_count; chunk += kChunk) {
     const size_t count = std::min(kChunk, face_count - chunk);
     run_blocks(executor, count, kFaceBlock, [&](size_t, size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const size_t f = chunk + i;
-        const double* o = corner(3 * size_t{topology.components[topology.component[f]].first_face});
-        parts[i] = tetrahedron(difference(corner(3 * f), o), difference(corner(3 * f + 1), o),
-                               difference(corner(3 * f + 2), o));
+        const double* o =
+            mesh.corner(3 * size_t{topology.components[topology.component[f]].first_face});
+        parts[i] =
+            tetrahedron(difference(mesh.corner(3 * f), o), difference(mesh.corner(3 * f + 1), o),
+                        difference(mesh.corner(3 * f + 2), o));
       }
     });
     for (size_t i = 0; i < count; ++i) add(sums[topology.component[chunk + i]], parts[i]);
@@ -108,7 +109,7 @@ Vector<Moments> component_moments(const double* xyz, const uint32_t* abc,
   return sums;
 }
 
-void set_boxes(const double* xyz, const uint32_t* abc, const MeshTopology& topology,
+void set_boxes(const MeshArrays& mesh, const MeshTopology& topology,
                Vector<ComponentShape>& by_number) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (ComponentShape& c : by_number) {
@@ -118,7 +119,7 @@ void set_boxes(const double* xyz, const uint32_t* abc, const MeshTopology& topol
   for (size_t i = 0; i < 3 * topology.component.size(); ++i) {
     ComponentShape& c = by_number[topology.component[i / 3]];
     for (size_t k = 0; k < 3; ++k) {
-      const double x = xyz[3 * static_cast<size_t>(abc[i]) + k];
+      const double x = mesh.corner(i)[k];
       c.low[k] = std::min(c.low[k], x);
       c.high[k] = std::max(c.high[k], x);
     }
@@ -126,7 +127,7 @@ void set_boxes(const double* xyz, const uint32_t* abc, const MeshTopology& topol
 }
 
 // Sums over the components in their order, from a corner of the first.
-void set_whole(const double* xyz, const uint32_t* abc, const Vector<Moments>& moments,
+void set_whole(const MeshArrays& mesh, const Vector<Moments>& moments,
                const Vector<ComponentMeasures>& order, ShapeMeasures& shape) {
   ComponentShape& whole = shape.whole;
   if (order.empty()) {
@@ -134,7 +135,7 @@ void set_whole(const double* xyz, const uint32_t* abc, const Vector<Moments>& mo
     return;
   }
   const auto reference = [&](const ComponentMeasures& c) {
-    return xyz + 3 * static_cast<size_t>(abc[3 * static_cast<size_t>(c.first_face)]);
+    return mesh.corner(3 * static_cast<size_t>(c.first_face));
   };
   const double* origin = reference(order[0]);
   std::copy_n(shape.components[0].low, 3, whole.low);
@@ -156,14 +157,13 @@ void set_whole(const double* xyz, const uint32_t* abc, const Vector<Moments>& mo
 
 }  // namespace
 
-ShapeMeasures shape_measures(const double* xyz, size_t vertex_count, const uint32_t* abc,
-                             size_t face_count, const Executor& executor) {
-  const EdgeTable edges(abc, face_count, vertex_count, executor);
-  const MeshTopology topology = mesh_topology(abc, face_count, vertex_count, edges);
-  const Vector<ComponentMeasures> order = component_measures(xyz, abc, topology, executor);
-  const Vector<Moments> moments = component_moments(xyz, abc, topology, executor);
+ShapeMeasures shape_measures(const MeshArrays& mesh, const Executor& executor) {
+  const MeshTopology topology =
+      mesh_topology(mesh.abc, mesh.face_count, mesh.vertex_count, executor);
+  const Vector<ComponentMeasures> order = component_measures(mesh, topology, executor);
+  const Vector<Moments> moments = component_moments(mesh, topology, executor);
   Vector<ComponentShape> by_number(topology.components.size());
-  set_boxes(xyz, abc, topology, by_number);
+  set_boxes(mesh, topology, by_number);
   ShapeMeasures shape;
   for (const ComponentMeasures& m : order) {
     const ComponentTopology& t = topology.components[m.component];
@@ -175,16 +175,15 @@ ShapeMeasures shape_measures(const double* xyz, size_t vertex_count, const uint3
     c.genus = m.genus;
     c.area = m.area;
     c.volume = t.encloses ? m.volume : std::numeric_limits<double>::quiet_NaN();
-    set_shape(moments[m.component],
-              xyz + 3 * static_cast<size_t>(abc[3 * static_cast<size_t>(m.first_face)]), c);
+    set_shape(moments[m.component], mesh.corner(3 * static_cast<size_t>(m.first_face)), c);
     shape.components.push_back(c);
   }
-  const SurfaceMeasures total = total_measures(vertex_count, topology, order);
+  const SurfaceMeasures total = total_measures(mesh.vertex_count, topology, order);
   shape.whole.vertices = total.vertices;
   shape.whole.faces = total.faces;
   shape.whole.euler = total.euler;
   shape.whole.genus = total.genus;
-  set_whole(xyz, abc, moments, order, shape);
+  set_whole(mesh, moments, order, shape);
   return shape;
 }
 

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/base/mesh_arrays.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
 
@@ -29,9 +30,7 @@ struct ShapeMeasures {
   Vector<ComponentShape> components;  // the largest area first, ties by first_face
 };
 
-// xyz: three finite values per vertex; abc: three indices below vertex_count per face; at most
-// kMaxFaces faces. The same bits for any executor.
-ShapeMeasures shape_measures(const double* xyz, size_t vertex_count, const uint32_t* abc,
-                             size_t face_count, const Executor& executor);
+// At most kMaxFaces faces. The same bits for any executor.
+ShapeMeasures shape_measures(const MeshArrays& mesh, const Executor& executor);
 
 }  // namespace plc

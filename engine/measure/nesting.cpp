@@ -36,12 +36,12 @@ Crossing cross(const Point3& s, const Point3& e, const Triangle& t) {
 
 class Search {
  public:
-  Search(const double* xyz, const uint32_t* abc, const MeshTopology& topology, const FaceTree& tree)
-      : xyz_(xyz), abc_(abc), topology_(topology), tree_(tree) {
+  Search(const MeshArrays& mesh, const MeshTopology& topology, const FaceTree& tree)
+      : mesh_(mesh), topology_(topology), tree_(tree) {
     double low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
     for (size_t c = 0; c < 3 * topology.component.size(); ++c) {
       for (size_t k = 0; k < 3; ++k) {
-        const double x = xyz[3 * static_cast<size_t>(abc[c]) + k];
+        const double x = mesh.corner(c)[k];
         low[k] = c == 0 ? x : std::min(low[k], x);
         high[k] = c == 0 ? x : std::max(high[k], x);
       }
@@ -57,7 +57,7 @@ class Search {
       bool odd = false, clean = true;
       tree_.along_segment(s, e, [&](uint32_t f) {
         if (topology_.component[f] == own) return;
-        const Crossing c = cross(s, e, make_triangle(xyz_, abc_ + 3 * static_cast<size_t>(f)));
+        const Crossing c = cross(s, e, make_triangle(mesh_.xyz, mesh_.face(f)));
         odd ^= c != Crossing::kNone;
         clean &= c != Crossing::kTouch;
       });
@@ -68,19 +68,18 @@ class Search {
   }
 
  private:
-  const double* xyz_;
-  const uint32_t* abc_;
+  MeshArrays mesh_;
   const MeshTopology& topology_;
   const FaceTree& tree_;
   double reach_ = 0;  // takes a ray out of the mesh
 };
 
 // The centre of each component's largest face (not a vertex: components may share one).
-Vector<Point3> starts(const double* xyz, const uint32_t* abc, const MeshTopology& topology) {
+Vector<Point3> starts(const MeshArrays& mesh, const MeshTopology& topology) {
   Vector<Point3> start(topology.components.size(), Point3{0, 0, 0});
   Vector<double> largest(topology.components.size(), -1);
   for (size_t f = 0; f < topology.component.size(); ++f) {
-    const Triangle t = make_triangle(xyz, abc + 3 * f);
+    const Triangle t = make_triangle(mesh.xyz, mesh.face(f));
     const Point3 &a = t.corner[0], &b = t.corner[1], &c = t.corner[2];
     const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
     const double vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
@@ -96,13 +95,12 @@ Vector<Point3> starts(const double* xyz, const uint32_t* abc, const MeshTopology
 
 }  // namespace
 
-Vector<ComponentSide> component_sides(const double* xyz, const uint32_t* abc,
-                                      const MeshTopology& topology,
+Vector<ComponentSide> component_sides(const MeshArrays& mesh, const MeshTopology& topology,
                                       const Vector<ComponentMeasures>& measures,
                                       const FaceTree& tree, const Executor& executor) {
   Vector<ComponentSide> sides(measures.size());
-  const Search search(xyz, abc, topology, tree);
-  const Vector<Point3> start = starts(xyz, abc, topology);
+  const Search search(mesh, topology, tree);
+  const Vector<Point3> start = starts(mesh, topology);
   run_blocks(executor, measures.size(), kComponentBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const uint32_t own = measures[i].component;

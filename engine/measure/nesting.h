@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/exact/face_tree.h"
 #include "engine/measure/measures.h"
 #include "engine/measure/mesh_topology.h"
@@ -20,8 +21,7 @@ struct ComponentSide {
 // the component's largest face with all other components, by exact predicates. A ray that touches
 // no vertex or edge decides alone; should all three fail in this, the majority does. Where
 // components intersect each other depth means little: such a mesh is invalid anyway.
-Vector<ComponentSide> component_sides(const double* xyz, const uint32_t* abc,
-                                      const MeshTopology& topology,
+Vector<ComponentSide> component_sides(const MeshArrays& mesh, const MeshTopology& topology,
                                       const Vector<ComponentMeasures>& measures,
                                       const FaceTree& tree, const Executor& executor);
 

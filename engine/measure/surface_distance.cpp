@@ -28,14 +28,14 @@ class NearestFace {
   double distance(const double* p) const {
     const double squared =
         tree_.nearest({p[0], p[1], p[2]}, std::numeric_limits<double>::infinity(), [&](uint32_t f) {
-          const uint32_t* ids = mesh_.abc + 3 * static_cast<size_t>(f);
-          return squared_distance_to_triangle(p, corner(ids[0]), corner(ids[1]), corner(ids[2]));
+          const size_t c = 3 * static_cast<size_t>(f);
+          return squared_distance_to_triangle(p, mesh_.corner(c), mesh_.corner(c + 1),
+                                              mesh_.corner(c + 2));
         });
     return std::sqrt(squared);
   }
 
  private:
-  const double* corner(uint32_t v) const { return mesh_.xyz + 3 * static_cast<size_t>(v); }
   MeshArrays mesh_;
   FaceTree tree_;
 };
@@ -82,9 +82,8 @@ Sums surface_sums(const MeshArrays& mesh, const NearestFace& other, const double
       const double* p[3];
       double corner[3];
       for (size_t k = 0; k < 3; ++k) {
-        const auto v = static_cast<size_t>(mesh.abc[3 * f + k]);
-        p[k] = mesh.xyz + 3 * v;
-        corner[k] = at_vertices[v];
+        p[k] = mesh.corner(3 * f + k);
+        corner[k] = at_vertices[mesh.abc[3 * f + k]];
       }
       parts[block].add(face_sums(other, p, corner));
     }
@@ -101,7 +100,7 @@ SurfaceDistances surface_distances(const MeshArrays& mesh, const MeshArrays& oth
   const NearestFace nearest(other, executor);
   Vector<double> at(mesh.vertex_count);
   run_blocks(executor, mesh.vertex_count, kBlock, [&](size_t, size_t begin, size_t end) {
-    for (size_t v = begin; v < end; ++v) at[v] = nearest.distance(mesh.xyz + 3 * v);
+    for (size_t v = begin; v < end; ++v) at[v] = nearest.distance(mesh.point(v));
   });
   const Sums sums = surface_sums(mesh, nearest, at.data(), executor);
   SurfaceDistances d{kNan, kNan, kNan, kNan, kNan};

@@ -1,19 +1,9 @@
 // Distances from a mesh to the nearest points of another one's faces.
 #pragma once
-#include <cstddef>
-#include <cstdint>
-
+#include "engine/base/mesh_arrays.h"
 #include "pyramid/executor.h"
 
 namespace plc {
-
-// Borrowed arrays, as measures.h has them.
-struct MeshArrays {
-  const double* xyz;
-  size_t vertex_count;
-  const uint32_t* abc;
-  size_t face_count;
-};
 
 // As plc_distances has them.
 struct SurfaceDistances {

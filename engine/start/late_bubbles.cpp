@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/constants.h"
+#include "engine/base/mesh_arrays.h"
 #include "engine/measure/measures.h"
 #include "engine/mesh/mesh_append.h"
 #include "engine/resolve/conform.h"
@@ -88,9 +89,7 @@ double volume_of(const Mesh& mesh, const Executor& executor) {
     const Vec3 p = mesh.at(v);
     xyz.insert(xyz.end(), {p.x, p.y, p.z});
   }
-  const Vector<uint32_t> faces = mesh.faces();
-  return surface_measures(xyz.data(), mesh.slots(), faces.data(), faces.size() / 3, executor)
-      .volume;
+  return surface_measures(arrays_of(xyz, mesh.faces()), executor).volume;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/base/constants.h"
+#include "engine/base/mesh_arrays.h"
 #include "engine/mesh/face_rings.h"
 #include "engine/mesh/mesh_append.h"
 #include "engine/resolve/conform.h"
@@ -212,8 +213,7 @@ Status make_mesh(const StartSpec& spec, const LevelImage& level, const Executor&
   }
   Vector<double> xyz(spec.xyz.size());
   for (size_t i = 0; i < xyz.size(); ++i) xyz[i] = spec.xyz[i] * level.space.step[i % 3];
-  return import_mesh(xyz.data(), static_cast<int64_t>(xyz.size() / 3), spec.abc.data(),
-                     static_cast<int64_t>(spec.abc.size() / 3), executor, mesh,
+  return import_mesh(arrays_of(xyz, spec.abc), executor, mesh,
                      spec.as_given.empty() ? nullptr : spec.as_given.data());
 }
 

@@ -28,17 +28,11 @@ Status refused(const std::string& message) {
 // Says what is wrong with a mesh that check_mesh() calls invalid, the root of the trouble first.
 class Complaint {
  public:
-  Complaint(const double* xyz, const double* as_given, size_t vertex_count, const uint32_t* abc,
-            size_t face_count, const Executor& executor)
-      : xyz_(xyz),
-        as_given_(as_given),
-        abc_(abc),
-        vertex_count_(vertex_count),
-        face_count_(face_count),
-        executor_(executor) {}
+  Complaint(const MeshArrays& mesh, const double* as_given, const Executor& executor)
+      : mesh_(mesh), as_given_(as_given), executor_(executor) {}
 
   std::string of(const MeshCheck& check) const {
-    if (face_count_ == 0) return "no faces";
+    if (mesh_.face_count == 0) return "no faces";
     if (const auto f = first_face_with_repeated_vertex()) {
       return "degenerate: a face repeats a vertex: " + face(*f);
     }
@@ -78,19 +72,20 @@ class Complaint {
   }
 
   std::string middle(size_t f) const {
-    const double *a = point(abc_[3 * f]), *b = point(abc_[3 * f + 1]), *c = point(abc_[3 * f + 2]);
+    const double *a = point(mesh_.abc[3 * f]), *b = point(mesh_.abc[3 * f + 1]),
+                 *c = point(mesh_.abc[3 * f + 2]);
     return at((a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3, (a[2] + b[2] + c[2]) / 3);
   }
 
   std::string face(size_t f) const {
-    return "face " + std::to_string(f) + " with vertices " + std::to_string(abc_[3 * f]) + ", " +
-           std::to_string(abc_[3 * f + 1]) + ", " + std::to_string(abc_[3 * f + 2]) + " " +
-           middle(f);
+    return "face " + std::to_string(f) + " with vertices " + std::to_string(mesh_.abc[3 * f]) +
+           ", " + std::to_string(mesh_.abc[3 * f + 1]) + ", " +
+           std::to_string(mesh_.abc[3 * f + 2]) + " " + middle(f);
   }
 
   std::optional<size_t> first_face_with_repeated_vertex() const {
-    for (size_t f = 0; f < face_count_; ++f) {
-      const uint32_t* v = abc_ + 3 * f;
+    for (size_t f = 0; f < mesh_.face_count; ++f) {
+      const uint32_t* v = mesh_.face(f);
       if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) return f;
     }
     return {};
@@ -99,32 +94,32 @@ class Complaint {
   // The first edge for which wanted(faces, whether the first two run it in the same direction).
   template <typename Wanted>
   std::string first_edge(const Wanted& wanted) const {
-    const EdgeTable edges(abc_, face_count_, vertex_count_, executor_);
+    const EdgeTable edges(mesh_.abc, mesh_.face_count, mesh_.vertex_count, executor_);
     std::string found;
-    edges.visit(0, vertex_count_,
-                [&](uint32_t low, uint32_t high, const EdgeUse* first, const EdgeUse* last) {
-                  if (!found.empty()) return;
-                  const auto uses = static_cast<size_t>(last - first);
-                  const bool same = uses > 1 && abc_[first[0].corner] == abc_[first[1].corner];
-                  if (!wanted(uses, same)) return;
-                  const double *p = point(low), *q = point(high);
-                  found = "between vertices " + std::to_string(low) + " and " +
-                          std::to_string(high) + " " +
-                          at((p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2);
-                });
+    edges.visit(
+        0, mesh_.vertex_count,
+        [&](uint32_t low, uint32_t high, const EdgeUse* first, const EdgeUse* last) {
+          if (!found.empty()) return;
+          const auto uses = static_cast<size_t>(last - first);
+          const bool same = uses > 1 && mesh_.abc[first[0].corner] == mesh_.abc[first[1].corner];
+          if (!wanted(uses, same)) return;
+          const double *p = point(low), *q = point(high);
+          found = "between vertices " + std::to_string(low) + " and " + std::to_string(high) + " " +
+                  at((p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2);
+        });
     return found;
   }
 
   std::string pinched(int64_t count) const {
-    const FaceRings rings(abc_, face_count_, vertex_count_, executor_);
+    const FaceRings rings(mesh_.abc, mesh_.face_count, mesh_.vertex_count, executor_);
     size_t v = 0;
-    while (v + 1 < vertex_count_ && rings.length(v) == rings.faces(v)) ++v;
+    while (v + 1 < mesh_.vertex_count && rings.length(v) == rings.faces(v)) ++v;
     return "not manifold: " + std::to_string(count) +
            " vertices where sheets touch, the first vertex " + vertex(v);
   }
 
   std::string flat(int64_t count) const {
-    const Vector<uint32_t> proper = proper_faces(xyz_, abc_, face_count_, executor_);
+    const Vector<uint32_t> proper = proper_faces(mesh_, executor_);
     size_t f = 0;
     while (f < proper.size() && proper[f] == f) ++f;
     return "degenerate: " + std::to_string(count) + " faces of zero area, the first " + face(f);
@@ -140,13 +135,13 @@ class Complaint {
   }
 
   std::string inside_out() const {
-    const EdgeTable edges(abc_, face_count_, vertex_count_, executor_);
-    const MeshTopology topology = mesh_topology(abc_, face_count_, vertex_count_, edges);
-    const auto measures = component_measures(xyz_, abc_, topology, executor_);
-    Vector<uint32_t> proper = proper_faces(xyz_, abc_, face_count_, executor_);
+    const MeshTopology topology =
+        mesh_topology(mesh_.abc, mesh_.face_count, mesh_.vertex_count, executor_);
+    const auto measures = component_measures(mesh_, topology, executor_);
+    Vector<uint32_t> proper = proper_faces(mesh_, executor_);
     FaceTree tree;
-    tree.build(xyz_, abc_, proper.data(), proper.size(), executor_);
-    const auto sides = component_sides(xyz_, abc_, topology, measures, tree, executor_);
+    tree.build(mesh_.xyz, mesh_.abc, proper.data(), proper.size(), executor_);
+    const auto sides = component_sides(mesh_, topology, measures, tree, executor_);
     size_t wrong = 0;
     size_t first = sides.size();
     for (size_t c = 0; c < sides.size(); ++c) {
@@ -162,36 +157,29 @@ class Complaint {
                                 : ", whose faces must be turned outward");
   }
 
-  const double *xyz_, *as_given_;
-  const uint32_t* abc_;
-  size_t vertex_count_, face_count_;
+  MeshArrays mesh_;
+  const double* as_given_;
   const Executor& executor_;
 };
 
-Status check_input(const double* xyz, const double* as_given, int64_t vertex_count,
-                   const uint32_t* abc, int64_t face_count, const char* prefix,
+Status check_input(const MeshArrays& mesh, const double* as_given, const char* prefix,
                    const Executor& executor) {
   MeshCheck check;
-  if (Status s = check_mesh(xyz, vertex_count, abc, face_count, executor, check); !s.ok()) {
+  if (Status s = check_mesh(mesh, executor, check); !s.ok()) {
     return {s.code(), "mesh: " + s.message()};
   }
   if (check.valid == 1) return {};
-  const Complaint complaint(xyz, as_given, static_cast<size_t>(vertex_count), abc,
-                            static_cast<size_t>(face_count), executor);
-  return refused(prefix + complaint.of(check));
+  return refused(prefix + Complaint(mesh, as_given, executor).of(check));
 }
 
 // Asked first: the search for intersections takes the square of the faces around one vertex.
-// Indices out of range are left to others.
-Status check_valences(int64_t vertex_count, const uint32_t* abc, int64_t face_count) {
-  constexpr int64_t kMaxCount = int64_t{1} << 32;
-  if (vertex_count < 0 || vertex_count > kMaxCount) return {};
-  if (face_count < 0 || face_count > kMaxFaces || abc == nullptr) return {};
-  const auto vertices = static_cast<size_t>(vertex_count);
-  const auto corners = 3 * static_cast<size_t>(face_count);
-  Vector<uint32_t> faces(vertices, 0);
-  for (size_t c = 0; c < corners; ++c) {
-    if (abc[c] < faces.size()) ++faces[abc[c]];
+// Counts and indices out of range are left to others.
+Status check_valences(const MeshArrays& mesh) {
+  if (mesh.vertex_count > uint64_t{1} << 32U) return {};
+  if (mesh.face_count > kMaxFaces || mesh.abc == nullptr) return {};
+  Vector<uint32_t> faces(mesh.vertex_count, 0);
+  for (size_t c = 0; c < 3 * mesh.face_count; ++c) {
+    if (mesh.abc[c] < faces.size()) ++faces[mesh.abc[c]];
   }
   const auto most = std::max_element(faces.begin(), faces.end());
   if (most == faces.end() || *most <= kMaxValence) return {};
@@ -200,18 +188,18 @@ Status check_valences(int64_t vertex_count, const uint32_t* abc, int64_t face_co
                  " are possible");
 }
 
-Status check_range(const double* xyz, size_t vertex_count, const FaceRings& rings) {
+Status check_range(const MeshArrays& mesh, const FaceRings& rings) {
   constexpr double kWidest = kReach;
   uint64_t used = 0;
-  for (size_t v = 0; v < vertex_count; ++v) {
+  for (size_t v = 0; v < mesh.vertex_count; ++v) {
     if (rings.faces(v) == 0) continue;
     ++used;
     for (size_t k = 0; k < 3; ++k) {
-      if (std::abs(xyz[3 * v + k]) <= kWidest) continue;
+      if (std::abs(mesh.point(v)[k]) <= kWidest) continue;
       char line[160];
       std::snprintf(line, sizeof line,
                     "mesh: vertex %zu: %c is %.6g in mesh space, expected -%.0f to %.0f", v,
-                    "xyz"[k], xyz[3 * v + k], kWidest, kWidest);
+                    "xyz"[k], mesh.point(v)[k], kWidest, kWidest);
       return refused(line);
     }
   }
@@ -222,30 +210,28 @@ Status check_range(const double* xyz, size_t vertex_count, const FaceRings& ring
 
 }  // namespace
 
-Status import_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
-                   const Executor& executor, Mesh& mesh, const double* as_given) {
-  if (as_given == nullptr) as_given = xyz;
-  if (Status s = check_valences(vertex_count, abc, face_count); !s.ok()) return s;
-  if (Status s = check_input(xyz, as_given, vertex_count, abc, face_count, "mesh: ", executor);
-      !s.ok()) {
-    return s;
-  }
-  const auto vertices = static_cast<size_t>(vertex_count);
-  const FaceRings rings(abc, static_cast<size_t>(face_count), vertices, executor);
-  if (Status s = check_range(xyz, vertices, rings); !s.ok()) return s;
+Status import_mesh(const MeshArrays& given, const Executor& executor, Mesh& mesh,
+                   const double* as_given) {
+  if (as_given == nullptr) as_given = given.xyz;
+  if (Status s = check_valences(given); !s.ok()) return s;
+  if (Status s = check_input(given, as_given, "mesh: ", executor); !s.ok()) return s;
+  const size_t vertices = given.vertex_count;
+  const FaceRings rings(given.abc, given.face_count, vertices, executor);
+  if (Status s = check_range(given, rings); !s.ok()) return s;
   // Rounding moves vertices a little: near sheets may meet then, and thin faces turn over.
   Vector<float> rounded(3 * vertices);
   Vector<double> back(3 * vertices);
   for (size_t v = 0; v < vertices; ++v) {
     if (rings.faces(v) == 0) continue;
     for (size_t i = 3 * v; i < 3 * v + 3; ++i) {
-      rounded[i] = static_cast<float>(xyz[i]);
+      rounded[i] = static_cast<float>(given.xyz[i]);
       back[i] = static_cast<double>(rounded[i]);
     }
   }
-  if (!std::equal(back.begin(), back.end(), xyz)) {
-    if (Status s = check_input(back.data(), as_given, vertex_count, abc, face_count,
-                               "mesh: after rounding to single precision: ", executor);
+  if (!std::equal(back.begin(), back.end(), given.xyz)) {
+    const MeshArrays moved{back.data(), vertices, given.abc, given.face_count};
+    if (Status s =
+            check_input(moved, as_given, "mesh: after rounding to single precision: ", executor);
         !s.ok()) {
       return s;
     }

@@ -2,24 +2,25 @@
 #pragma once
 #include <cstdint>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/mesh/mesh.h"
 #include "pyramid/executor.h"
 #include "pyramid/status.h"
 
 namespace plc {
 
-// xyz: three values of mesh space per vertex; abc: three indices per face, counter-clockwise seen
-// from outside. Replaces what is in the mesh, but for delta, which is left to the caller as are the
-// constraints for it (conform.h). Vertices without a face are dropped, the others keep their order.
+// given: in mesh space, faces counter-clockwise seen from outside. Replaces what is in the mesh,
+// but for delta, which is left to the caller as are the constraints for it (conform.h). Vertices
+// without a face are dropped, the others keep their order.
 //
 // kInvalidData, the mesh unchanged, for all that is not a valid surface (mesh_check.h): no
 // faces, out of range, open, not manifold, inconsistently oriented, inside out (walls of
 // cavities: outside out), faces of zero area, self-intersecting - or become so by the rounding of
 // coordinates to float - or with more vertices or edges at a vertex than ids have room for. One
 // line that says what is wrong, how often and where first, in the ids given and at the places of
-// `as_given`: three values per vertex as the caller's user knows them; NULL: xyz.
+// `as_given`: three values per vertex as the caller's user knows them; NULL: those of `given`.
 // kInvalidArgument for counts below 0 and NULL. The same for any executor.
-Status import_mesh(const double* xyz, int64_t vertex_count, const uint32_t* abc, int64_t face_count,
-                   const Executor& executor, Mesh& mesh, const double* as_given = nullptr);
+Status import_mesh(const MeshArrays& given, const Executor& executor, Mesh& mesh,
+                   const double* as_given = nullptr);
 
 }  // namespace plc

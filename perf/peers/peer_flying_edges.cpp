@@ -2,6 +2,7 @@
 // --smooth its windowed sinc, as VTK's defaults have it, makes it smooth.
 #include <vtkWindowedSincPolyDataFilter.h>
 
+#include "engine/base/mesh_arrays.h"
 #include "perf/peers/peer_task.h"
 #include "perf/peers/peer_vtk.h"
 

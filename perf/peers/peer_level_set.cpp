@@ -3,6 +3,7 @@
 //   peer_level_set VOLUME [LEVELS]    levels above the full image, 3 by default
 // A level ends
 // when the mean change of the level set falls under 0.005, or after 2000 iterations.
+#include "engine/base/mesh_arrays.h"
 #include "perf/peers/peer_itk.h"
 // Behind what peer_itk.h defines.
 #include <itkThresholdSegmentationLevelSetImageFilter.h>

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "engine/base/mesh_arrays.h"
 #include "perf/peers/peer.h"
 
 namespace peer {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/base/blocks.h"
+#include "engine/base/mesh_arrays.h"
 #include "engine/measure/curvature.h"
 #include "engine/measure/measures.h"
 #include "perf/truth/even_samples.h"
@@ -125,8 +126,8 @@ Deviation Truth::iso_deviation(const Surface& mesh) const {
 double Truth::curvature_error(const Surface& mesh) const {
   const size_t count = mesh.xyz.size() / 3;
   std::vector<double> mean(count), off;
-  plc::vertex_curvature(mesh.xyz.data(), count, mesh.abc.data(), mesh.abc.size() / 3, executor_,
-                        mean.data(), nullptr, nullptr);
+  plc::vertex_curvature(plc::arrays_of(mesh.xyz, mesh.abc), executor_, mean.data(), nullptr,
+                        nullptr);
   const size_t step = std::max<size_t>(1, count / 20'000);
   for (size_t v = 0; v < count; v += step) {
     const double* xyz = mesh.xyz.data() + 3 * v;
@@ -145,8 +146,7 @@ Measured Truth::measure(Surface mesh) const {
   Measured m;
   m.vertices = mesh.xyz.size() / 3;
   m.faces = mesh.abc.size() / 3;
-  plc::SurfaceMeasures whole =
-      plc::surface_measures(mesh.xyz.data(), m.vertices, mesh.abc.data(), m.faces, executor_);
+  plc::SurfaceMeasures whole = plc::surface_measures(plc::arrays_of(mesh.xyz, mesh.abc), executor_);
   if (whole.volume < 0) {
     for (size_t i = 0; i < mesh.abc.size(); i += 3) std::swap(mesh.abc[i + 1], mesh.abc[i + 2]);
     whole.volume = -whole.volume;

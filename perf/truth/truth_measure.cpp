@@ -4,6 +4,7 @@
 // there is none. Of a mesh without faces that is all that is told.
 #include <cmath>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/base/schedule.h"
 #include "engine/measure/measures.h"
 #include "perf/truth/deviations.h"
@@ -72,8 +73,7 @@ void print(const std::string& path, const truth::Measured& m) {
 void print_truth(const truth::Scene& scene, const truth::Truth& truth,
                  const plc::Schedule& schedule) {
   const auto measures = [&](const Surface& s) {
-    return plc::surface_measures(s.xyz.data(), s.xyz.size() / 3, s.abc.data(), s.abc.size() / 3,
-                                 schedule);
+    return plc::surface_measures(plc::arrays_of(s.xyz, s.abc), schedule);
   };
   const plc::SurfaceMeasures object = measures(truth.object());
   const truth::Shape& shape = scene.shape;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/measure/surface_distance.h"
 #include "perf/truth/fine_field.h"
 #include "perf/truth/scene.h"

@@ -15,6 +15,7 @@
 #include <set>
 #include <thread>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/detect/edge_constraints.h"
 #include "engine/guard/embedding_guard.h"
 #include "engine/measure/mesh_check.h"
@@ -120,9 +121,7 @@ std::string invalid(const Mesh& mesh) {
   }
   const plc::Vector<uint32_t> abc = mesh.faces();
   plc::MeshCheck check;
-  const plc::Status status =
-      plc::check_mesh(xyz.data(), mesh.slots(), abc.data(), static_cast<int64_t>(abc.size() / 3),
-                      samples::kSerial, check);
+  const plc::Status status = plc::check_mesh(plc::arrays_of(xyz, abc), samples::kSerial, check);
   if (!status.ok()) return status.message();
   if (check.valid != 0) return {};
   return "not valid: closed " + std::to_string(check.closed) + ", manifold " +

@@ -38,7 +38,7 @@ class ThreadExecutor final : public plc::Executor {
 };
 
 plc::Vector<FacePair> pairs_of(const Soup& m) {
-  return plc::self_intersections(m.xyz.data(), m.abc.data(), m.face_count(), plc::SerialExecutor());
+  return plc::self_intersections(m.arrays(), plc::SerialExecutor());
 }
 
 plc::Vector<FacePair> every_pair_tested(const Soup& m) {
@@ -133,9 +133,7 @@ TEST_CASE("faces of zero area are left out of the search", "[self_intersection]"
   const uint32_t v = m.vertex(0, 0, 0);
   m.face(0, v, 1);  // through the middle
   CHECK(pairs_of(m).empty());
-  CHECK(
-      plc::proper_faces(m.xyz.data(), m.abc.data(), m.face_count(), plc::SerialExecutor()).size() ==
-      m.face_count() - 2);
+  CHECK(plc::proper_faces(m.arrays(), plc::SerialExecutor()).size() == m.face_count() - 2);
 }
 
 TEST_CASE("faces of all sizes intersect where a test of every pair says so",
@@ -162,7 +160,7 @@ TEST_CASE("the pairs are the same for every executor", "[self_intersection]") {
   CHECK(pairs.size() > 1000);
   CHECK(std::is_sorted(pairs.begin(), pairs.end()));
   const auto by = [&](const plc::Executor& executor, size_t limit) {
-    return plc::self_intersections(m.xyz.data(), m.abc.data(), m.face_count(), executor, limit);
+    return plc::self_intersections(m.arrays(), executor, limit);
   };
   constexpr auto kAll = std::numeric_limits<size_t>::max();
   CHECK(by(ReverseExecutor(), kAll) == pairs);
@@ -175,8 +173,7 @@ TEST_CASE("a limit returns so many true pairs, or all when there are fewer",
   const Soup m = shaken(samples::torus(100, 60, 2, 0.7), 4, 0.05);
   const auto all = pairs_of(m);
   for (const size_t limit : {size_t{0}, size_t{1}, size_t{7}, all.size(), all.size() + 1}) {
-    const auto some = plc::self_intersections(m.xyz.data(), m.abc.data(), m.face_count(),
-                                              plc::SerialExecutor(), limit);
+    const auto some = plc::self_intersections(m.arrays(), plc::SerialExecutor(), limit);
     CHECK(some.size() == std::min(limit, all.size()));
     CHECK(std::includes(all.begin(), all.end(), some.begin(), some.end()));
   }

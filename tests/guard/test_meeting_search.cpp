@@ -46,8 +46,9 @@ plc::Vector<FacePair> expected(const plc::MeetingSearch& search, const samples::
     const uint32_t* abc = search.face(f);
     return marked[abc[0]] != 0 || marked[abc[1]] != 0 || marked[abc[2]] != 0;
   };
-  for (const FacePair& pair : plc::self_intersections(xyz.data(), search.face(0),
-                                                      search.face_count(), plc::SerialExecutor())) {
+  for (const FacePair& pair : plc::self_intersections(
+           {xyz.data(), r.positions.size(), search.face(0), search.face_count()},
+           plc::SerialExecutor())) {
     const bool f = is_marked(pair.first);
     const bool g = is_marked(pair.second);
     if ((f && g) || ((f || g) && share_vertex(search, pair))) pairs.push_back(pair);

@@ -20,8 +20,7 @@ struct Curvatures {
 Curvatures curvatures(const Soup& m, const plc::Executor& executor = plc::SerialExecutor()) {
   const size_t n = m.vertex_count();
   Curvatures c{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n)};
-  plc::vertex_curvature(m.xyz.data(), n, m.abc.data(), m.face_count(), executor, c.mean.data(),
-                        c.gaussian.data(), c.area.data());
+  plc::vertex_curvature(m.arrays(), executor, c.mean.data(), c.gaussian.data(), c.area.data());
   return c;
 }
 

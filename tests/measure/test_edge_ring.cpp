@@ -16,7 +16,7 @@ plc::EdgeRings rings(const Soup& m) {
 
 plc::Vector<uint8_t> bends(const Soup& m) {
   const plc::VertexCorners corners(m.abc.data(), m.face_count(), m.vertex_count());
-  return plc::bending_vertices(m.xyz.data(), m.abc.data(), corners, rings(m));
+  return plc::bending_vertices(m.arrays(), corners, rings(m));
 }
 
 }  // namespace

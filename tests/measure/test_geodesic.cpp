@@ -17,15 +17,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 std::vector<double> distances(const Soup& m, uint32_t source,
                               const plc::Executor& executor = plc::SerialExecutor()) {
   std::vector<double> d(m.vertex_count(), -1);
-  plc::geodesic_distances(m.xyz.data(), m.vertex_count(), m.abc.data(), m.face_count(), source,
-                          executor, d.data());
+  plc::geodesic_distances(m.arrays(), source, executor, d.data());
   return d;
 }
 
 uint32_t vertex_at(const Soup& m, double x, double y, double z) {
   const double point[3] = {x, y, z};
-  return static_cast<uint32_t>(
-      plc::nearest_vertex(m.xyz.data(), m.vertex_count(), m.abc.data(), m.face_count(), point));
+  return static_cast<uint32_t>(plc::nearest_vertex(m.arrays(), point));
 }
 
 double apart(const Soup& m, size_t a, size_t b) {

@@ -1,3 +1,4 @@
+#include "engine/base/mesh_arrays.h"
 #include "engine/measure/measures.h"
 
 #include <array>
@@ -19,13 +20,11 @@ class ReverseExecutor final : public plc::Executor {
 };
 
 plc::SurfaceMeasures measure(const Soup& m) {
-  return plc::surface_measures(m.xyz.data(), m.vertex_count(), m.abc.data(), m.face_count(),
-                               plc::SerialExecutor());
+  return plc::surface_measures(m.arrays(), plc::SerialExecutor());
 }
 
 plc::Vector<plc::ComponentMeasures> components(const Soup& m) {
-  return plc::component_measures(m.xyz.data(), m.vertex_count(), m.abc.data(), m.face_count(),
-                                 plc::SerialExecutor());
+  return plc::component_measures(m.arrays(), plc::SerialExecutor());
 }
 
 // Two tori joined by a triangular tube in place of a face of each.
@@ -146,8 +145,8 @@ TEST_CASE("float and double positions of the same values measure the same", "[me
     x = narrow.back();
   }
   const plc::SurfaceMeasures a = measure(m);
-  const plc::SurfaceMeasures b = plc::surface_measures(
-      narrow.data(), m.vertex_count(), m.abc.data(), m.face_count(), plc::SerialExecutor());
+  const plc::SurfaceMeasures b =
+      plc::surface_measures(plc::arrays_of(narrow, m.abc), plc::SerialExecutor());
   CHECK(a.area == b.area);
   CHECK(a.volume == b.volume);
 }
@@ -155,8 +154,7 @@ TEST_CASE("float and double positions of the same values measure the same", "[me
 TEST_CASE("measures are the same bits for any order of tasks", "[measures]") {
   const Soup m = samples::torus(150, 70, 2, 0.6);
   const plc::SurfaceMeasures a = measure(m);
-  const plc::SurfaceMeasures b = plc::surface_measures(m.xyz.data(), m.vertex_count(), m.abc.data(),
-                                                       m.face_count(), ReverseExecutor());
+  const plc::SurfaceMeasures b = plc::surface_measures(m.arrays(), ReverseExecutor());
   CHECK(a.area == b.area);
   CHECK(a.volume == b.volume);
 }

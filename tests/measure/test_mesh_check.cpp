@@ -20,18 +20,14 @@ class ReverseExecutor final : public plc::Executor {
 
 plc::MeshCheck check(const Soup& m, const plc::Executor& executor = plc::SerialExecutor()) {
   plc::MeshCheck c;
-  const plc::Status status =
-      plc::check_mesh(m.xyz.data(), static_cast<int64_t>(m.vertex_count()), m.abc.data(),
-                      static_cast<int64_t>(m.face_count()), executor, c);
+  const plc::Status status = plc::check_mesh(m.arrays(), executor, c);
   REQUIRE(status.ok());
   return c;
 }
 
 std::string complaint(const Soup& m) {
   plc::MeshCheck c;
-  const plc::Status status =
-      plc::check_mesh(m.xyz.data(), static_cast<int64_t>(m.vertex_count()), m.abc.data(),
-                      static_cast<int64_t>(m.face_count()), plc::SerialExecutor(), c);
+  const plc::Status status = plc::check_mesh(m.arrays(), plc::SerialExecutor(), c);
   CHECK(status.code() == plc::ErrorCode::kInvalidData);
   return status.message();
 }
@@ -265,12 +261,12 @@ TEST_CASE("impossible counts are refused and leave the result alone", "[mesh_che
   c.valid = 77;
   const plc::SerialExecutor serial;
   const double xyz[3] = {0, 0, 0};
-  CHECK(plc::check_mesh(xyz, -1, nullptr, 0, serial, c).message() ==
+  CHECK(plc::check_mesh({xyz, static_cast<size_t>(-1), nullptr, 0}, serial, c).message() ==
         "the mesh has -1 vertices, expected 0 to 4294967296");
-  CHECK(plc::check_mesh(xyz, 1, nullptr, int64_t{1} << 40, serial, c).code() ==
+  CHECK(plc::check_mesh({xyz, 1, nullptr, size_t{1} << 40U}, serial, c).code() ==
         plc::ErrorCode::kInvalidArgument);
-  CHECK_FALSE(plc::check_mesh(nullptr, 1, nullptr, 0, serial, c).ok());
-  CHECK_FALSE(plc::check_mesh(xyz, 1, nullptr, 1, serial, c).ok());
+  CHECK_FALSE(plc::check_mesh({nullptr, 1, nullptr, 0}, serial, c).ok());
+  CHECK_FALSE(plc::check_mesh({xyz, 1, nullptr, 1}, serial, c).ok());
   CHECK(c.valid == 77);
 }
 

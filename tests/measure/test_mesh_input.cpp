@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/measure/mesh_topology.h"
 #include "pyramid/memory.h"
 #include "tests/samples/sample_shapes.h"
@@ -15,8 +16,7 @@ using Catch::Matchers::Contains;
 using plc::ErrorCode;
 
 plc::Status checked(const std::vector<double>& xyz, const plc::Vector<uint32_t>& abc) {
-  return plc::check_mesh_input(xyz.data(), static_cast<int64_t>(xyz.size() / 3), abc.data(),
-                               static_cast<int64_t>(abc.size() / 3), samples::ReverseExecutor());
+  return plc::check_mesh_input(plc::arrays_of(xyz, abc), samples::ReverseExecutor());
 }
 
 }  // namespace
@@ -49,7 +49,9 @@ TEST_CASE("counts that cannot be and arrays that are missing are refused", "[mes
   const uint32_t abc[3] = {0, 0, 0};
   const plc::SerialExecutor serial;
   const auto code = [&](const double* x, int64_t vertices, const uint32_t* a, int64_t faces) {
-    return plc::check_mesh_input(x, vertices, a, faces, serial).code();
+    return plc::check_mesh_input({x, static_cast<size_t>(vertices), a, static_cast<size_t>(faces)},
+                                 serial)
+        .code();
   };
   CHECK(code(xyz, 1, abc, 1) == ErrorCode::kOk);
   CHECK(code(xyz, -1, abc, 1) == ErrorCode::kInvalidArgument);

@@ -13,8 +13,7 @@ using samples::kPi;
 using samples::Soup;
 
 ShapeMeasures shape(const Soup& m, const plc::Executor& executor = plc::SerialExecutor()) {
-  return plc::shape_measures(m.xyz.data(), m.vertex_count(), m.abc.data(), m.face_count(),
-                             executor);
+  return plc::shape_measures(m.arrays(), executor);
 }
 
 const double kOffset[3] = {0.3, -0.2, 0.7};

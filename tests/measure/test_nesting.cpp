@@ -13,16 +13,14 @@ using samples::Soup;
 
 plc::Vector<plc::ComponentSide> sides(const Soup& m) {
   const plc::SerialExecutor serial;
-  const plc::EdgeTable edges(m.abc.data(), m.face_count(), m.vertex_count(), serial);
   const plc::MeshTopology topology =
-      plc::mesh_topology(m.abc.data(), m.face_count(), m.vertex_count(), edges);
+      plc::mesh_topology(m.abc.data(), m.face_count(), m.vertex_count(), serial);
   plc::Vector<uint32_t> ids(m.face_count());
   std::iota(ids.begin(), ids.end(), 0U);
   plc::FaceTree tree;
   tree.build(m.xyz.data(), m.abc.data(), ids.data(), ids.size(), serial);
-  return plc::component_sides(m.xyz.data(), m.abc.data(), topology,
-                              plc::component_measures(m.xyz.data(), m.abc.data(), topology, serial),
-                              tree, serial);
+  return plc::component_sides(m.arrays(), topology,
+                              plc::component_measures(m.arrays(), topology, serial), tree, serial);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include "engine/base/mesh_arrays.h"
 #include "engine/measure/surface_distance.h"
 
 #include <catch2/catch.hpp>

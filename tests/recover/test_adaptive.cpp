@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/base/state_io.h"
 #include "engine/guard/self_meeting.h"
 #include "engine/measure/measures.h"
@@ -36,9 +37,7 @@ Result recovered(Run run, const plc::SizeSpec& sizes = {}) {
     const plc::Vec3 p = r.mesh.at(v);
     xyz.insert(xyz.end(), {p.x, p.y, p.z});
   }
-  const auto faces = r.mesh.faces();
-  r.measures =
-      plc::surface_measures(xyz.data(), r.mesh.slots(), faces.data(), faces.size() / 3, schedule);
+  r.measures = plc::surface_measures(plc::arrays_of(xyz, r.mesh.faces()), schedule);
   return r;
 }
 

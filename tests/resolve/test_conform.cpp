@@ -21,9 +21,7 @@ using samples::Volume;
 constexpr double kPi = 3.14159265358979323846;
 
 void import(Mesh& mesh, const Soup& m) {
-  REQUIRE(plc::import_mesh(m.xyz.data(), static_cast<int64_t>(m.vertex_count()), m.abc.data(),
-                           static_cast<int64_t>(m.face_count()), samples::kSerial, mesh)
-              .message() == "");
+  REQUIRE(plc::import_mesh(m.arrays(), samples::kSerial, mesh).message() == "");
 }
 
 plc::ImageView view_of(const Volume& v) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/mesh_arrays.h"
 #include "pyramid/memory.h"
 
 namespace samples {
@@ -18,6 +19,7 @@ struct Soup {
 
   size_t vertex_count() const { return xyz.size() / 3; }
   size_t face_count() const { return abc.size() / 3; }
+  plc::MeshArrays arrays() const { return {xyz.data(), vertex_count(), abc.data(), face_count()}; }
   uint32_t vertex(double x, double y, double z) {
     for (const double value : {x, y, z}) xyz.push_back(value);
     return static_cast<uint32_t>(vertex_count() - 1);

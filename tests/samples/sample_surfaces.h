@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/exact/self_intersection.h"
 #include "engine/mesh/mesh.h"
 #include "engine/mesh/mesh_invariants.h"
@@ -155,8 +156,7 @@ inline std::vector<std::pair<Corners, Corners>> meeting_pairs(const plc::Mesh& m
     return Corners{abc[at], abc[at + 1], abc[at + 2]};
   };
   std::vector<std::pair<Corners, Corners>> pairs;
-  for (const auto& [f, g] :
-       plc::self_intersections(xyz.data(), abc.data(), abc.size() / 3, kSerial)) {
+  for (const auto& [f, g] : plc::self_intersections(plc::arrays_of(xyz, abc), kSerial)) {
     pairs.emplace_back(corners(f), corners(g));
   }
   return pairs;

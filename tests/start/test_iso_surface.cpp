@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/base/schedule.h"
 #include "engine/measure/measures.h"
 #include "engine/measure/mesh_check.h"
@@ -42,9 +43,7 @@ plc::MeshCheck checked(const Mesh& mesh) {
   }
   const plc::Vector<uint32_t> abc = mesh.faces();
   plc::MeshCheck check;
-  REQUIRE(plc::check_mesh(xyz.data(), static_cast<int64_t>(mesh.slots()), abc.data(),
-                          static_cast<int64_t>(abc.size() / 3), samples::kSerial, check)
-              .ok());
+  REQUIRE(plc::check_mesh(plc::arrays_of(xyz, abc), samples::kSerial, check).ok());
   CHECK(check.valid == 1);
   CHECK(check.isolated_vertices == 0);
   return check;

@@ -13,8 +13,7 @@ using plc::Mesh;
 using samples::Soup;
 
 plc::Status import(const Soup& m, Mesh& mesh) {
-  return plc::import_mesh(m.xyz.data(), static_cast<int64_t>(m.vertex_count()), m.abc.data(),
-                          static_cast<int64_t>(m.face_count()), samples::kSerial, mesh);
+  return plc::import_mesh(m.arrays(), samples::kSerial, mesh);
 }
 
 // What is said about a mesh that must be refused, and must leave what was there.
@@ -94,9 +93,9 @@ TEST_CASE("vertices without a face are dropped", "[mesh_import]") {
 TEST_CASE("a mesh without faces is refused", "[mesh_import]") {
   CHECK(complaint(Soup{}) == "mesh: no faces");
   Mesh mesh;
-  CHECK(plc::import_mesh(nullptr, 3, nullptr, 0, samples::kSerial, mesh).code() ==
+  CHECK(plc::import_mesh({nullptr, 3, nullptr, 0}, samples::kSerial, mesh).code() ==
         plc::ErrorCode::kInvalidArgument);
-  CHECK(plc::import_mesh(nullptr, -1, nullptr, 0, samples::kSerial, mesh).code() ==
+  CHECK(plc::import_mesh({nullptr, size_t{1} << 40U, nullptr, 0}, samples::kSerial, mesh).code() ==
         plc::ErrorCode::kInvalidArgument);
 }
 
