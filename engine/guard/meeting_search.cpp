@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
-#include <limits>
+#include <span>
 
 #include "engine/base/blocks.h"
 #include "engine/exact/triangle_intersection.h"
@@ -14,176 +13,15 @@
 namespace plc {
 namespace {
 
-// Per task: vertices whose faces are listed, and nodes that are built; vertices whose faces are
-// searched, and nodes of leaves that are.
-constexpr size_t kVertexBlock = 128;
-constexpr size_t kNodeBlock = 128;
+// Per task: vertices whose faces are searched, and nodes of leaves that are.
 constexpr size_t kStarBlock = 128;
 constexpr size_t kSearchBlock = 4;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 uint32_t lowest_bit(uint32_t mask) {
   return static_cast<uint32_t>(std::countr_zero(mask));
 }
 
-// visit(index) of the bytes that are not 0, ascending. They are few, so eight are looked at at
-// once.
-template <typename Visit>
-void for_set_bytes(const uint8_t* bytes, uint32_t count, const Visit& visit) {
-  for (uint32_t i = 0; i < count; ++i) {
-    uint64_t eight = 0;
-    while (i + sizeof eight <= count &&
-           (std::memcpy(&eight, bytes + i, sizeof eight), eight == 0)) {
-      i += sizeof eight;
-    }
-    if (i < count && bytes[i] != 0) visit(i);
-  }
-}
-
 }  // namespace
-
-Box3 MeetingSearch::all_lanes(const BoxLanes& b) {
-  Box3 box{};
-  for (int axis = 0; axis < 3; ++axis) {
-    box.low[axis] = *std::min_element(b.low[axis], b.low[axis] + kLanes);
-    box.high[axis] = *std::max_element(b.high[axis], b.high[axis] + kLanes);
-  }
-  return box;
-}
-
-// The marked vertices and their neighbours; all vertices where there are no marks.
-void MeetingSearch::list_vertices(const Mesh& mesh) {
-  for (const uint32_t v : vertices_) listed_[v] = 0;
-  vertices_.clear();
-  listed_.resize(mesh.slots);
-  const auto list = [&](uint32_t v) {
-    if (listed_[v] == 0) vertices_.push_back(v);
-    listed_[v] = 1;
-  };
-  const auto with_neighbors = [&](uint32_t v) {
-    const uint32_t count = mesh.rings.valence[v];
-    if (count != 0) list(v);
-    for (uint32_t k = 0; k < count; ++k) list(mesh.rings.slot(v, k));
-  };
-  if (mesh.marks != nullptr) {
-    for_set_bytes(mesh.marks, mesh.slots, with_neighbors);
-    sort_vertices(mesh.slots);
-    return;
-  }
-  for (uint32_t v = 0; v < mesh.slots; ++v) {
-    if (mesh.rings.valence[v] != 0) list(v);
-  }
-}
-
-// Makes the listed vertices ascend. Where there are many, it is faster to go through all ids.
-void MeetingSearch::sort_vertices(uint32_t slots) {
-  constexpr size_t kFew = 128;
-  if (vertices_.size() < slots / kFew) {
-    std::sort(vertices_.begin(), vertices_.end());
-    return;
-  }
-  vertices_.clear();
-  for_set_bytes(listed_.data(), slots, [&](uint32_t v) { vertices_.push_back(v); });
-}
-
-void MeetingSearch::list_faces(const Mesh& mesh, const Executor& executor) {
-  // Visits each face once: at that of its marked corners which has the lowest id.
-  const auto for_faces = [&](size_t begin, size_t end, const auto& vertex, const auto& face) {
-    for (size_t i = begin; i < end; ++i) {
-      const uint32_t v = vertices_[i];
-      vertex(i);
-      if (!mesh.marked(v)) continue;
-      const uint32_t count = mesh.rings.valence[v];
-      uint32_t b = mesh.rings.slot(v, 0);
-      for (uint32_t k = 0; k < count; ++k) {
-        const uint32_t a = b;
-        b = mesh.rings.slot(v, k + 1 == count ? 0 : k + 1);
-        if ((v < a || !mesh.marked(a)) && (v < b || !mesh.marked(b))) face(v, a, b);
-      }
-    }
-  };
-  const size_t count = vertices_.size();
-  block_faces_.resize_uninitialized(block_count(count, kVertexBlock));
-  run_blocks(executor, count, kVertexBlock, [&](size_t block, size_t begin, size_t end) {
-    uint32_t faces = 0;
-    for_faces(
-        begin, end, [](size_t) {}, [&](uint32_t, uint32_t, uint32_t) { ++faces; });
-    block_faces_[block] = faces;
-  });
-  uint32_t total = 0;
-  for (uint32_t& n : block_faces_) {
-    const uint32_t here = n;
-    n = total;
-    total += here;
-  }
-  face_count_ = total;
-  // Whole leaves: kernels read the ids of all lanes.
-  faces_.resize_uninitialized(3 * block_count(total, kLanes) * kLanes);
-  std::fill(faces_.begin() + 3 * static_cast<std::ptrdiff_t>(total), faces_.end(), 0U);
-  begin_.resize_uninitialized(count + 1);
-  begin_[count] = total;
-  run_blocks(executor, count, kVertexBlock, [&](size_t block, size_t begin, size_t end) {
-    uint32_t next = block_faces_[block];
-    for_faces(
-        begin, end, [&](size_t i) { begin_[i] = next; },
-        [&](uint32_t a, uint32_t b, uint32_t c) {
-          uint32_t* out = faces_.data() + 3 * static_cast<size_t>(next++);
-          out[0] = a, out[1] = b, out[2] = c;
-        });
-  });
-}
-
-void MeetingSearch::build_leaves(const Mesh& mesh, const Executor& executor) {
-  if (levels_.empty()) levels_.emplace_back();
-  level_count_ = 1;
-  Level& level = levels_[0];
-  const size_t count = block_count(face_count(), kLanes);
-  level.boxes.resize_uninitialized(count);
-  level.moved.resize_uninitialized(count);
-  run_blocks(executor, count, kNodeBlock, [&](size_t, size_t begin, size_t end) {
-    for (size_t leaf = begin; leaf < end; ++leaf) {
-      BoxLanes& boxes = level.boxes[leaf];
-      uint32_t moved = 0;
-      const auto used =
-          static_cast<uint32_t>(std::min<size_t>(kLanes, face_count() - leaf * kLanes));
-      for (uint32_t k = 0; k < used; ++k) {
-        const uint32_t* abc = faces_.data() + 3 * (leaf * kLanes + k);
-        const FaceBox box = face_box(mesh.positions, abc);
-        boxes.set(k,
-                  {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}});
-        moved |= static_cast<uint32_t>(mesh.moved(abc)) << k;
-      }
-      for (uint32_t k = used; k < kLanes; ++k) {
-        boxes.set(k, {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
-      }
-      level.moved[leaf] = static_cast<uint8_t>(moved);
-    }
-  });
-}
-
-void MeetingSearch::build_level(size_t index, const Executor& executor) {
-  if (levels_.size() <= index) levels_.emplace_back();
-  level_count_ = index + 1;
-  Level& level = levels_[index];
-  const Level& below = levels_[index - 1];
-  const size_t children = below.boxes.size(), count = block_count(children, kLanes);
-  level.boxes.resize_uninitialized(count);
-  level.moved.resize_uninitialized(count);
-  run_blocks(executor, count, kNodeBlock, [&](size_t, size_t begin, size_t end) {
-    for (size_t node = begin; node < end; ++node) {
-      uint32_t moved = 0;
-      for (uint32_t k = 0; k < kLanes; ++k) {
-        const size_t child = node * kLanes + k;
-        const bool used = child < children;
-        level.boxes[node].set(k, used ? all_lanes(below.boxes[child])
-                                      : Box3{{kInfinity, kInfinity, kInfinity},
-                                             {-kInfinity, -kInfinity, -kInfinity}});
-        moved |= static_cast<uint32_t>(used && below.moved[child] != 0) << k;
-      }
-      level.moved[node] = static_cast<uint8_t>(moved);
-    }
-  });
-}
 
 // The index of a listed face, whichever of its corners comes first here.
 uint32_t MeetingSearch::index_of(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) const {
@@ -292,32 +130,23 @@ void MeetingSearch::search_leaves(const Mesh& mesh, SimdTarget simd, uint32_t no
   }
 }
 
-const Vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t slots,
-                                            const Float4* positions, const uint8_t* marked,
-                                            const Executor& executor, const Float4* before) {
-  const Mesh mesh{rings, slots, positions, marked, before};
-  pairs_.clear();
-  list_vertices(mesh);
-  list_faces(mesh, executor);
-  if (face_count() == 0) return pairs_;
-  build_leaves(mesh, executor);
-  do build_level(level_count_, executor);
-  while (levels_[level_count_ - 1].boxes.size() > 1);
+void MeetingSearch::search(const Mesh& mesh, std::span<const uint32_t> stars,
+                           const Executor& executor) {
   const size_t nodes = levels_[1].boxes.size();
-  const size_t vertex_tasks = block_count(vertices_.size(), kStarBlock);
-  const size_t tasks = vertex_tasks + block_count(nodes, kSearchBlock);
+  const size_t star_tasks = block_count(stars.size(), kStarBlock);
+  const size_t tasks = star_tasks + block_count(nodes, kSearchBlock);
   found_.resize(std::max(found_.size(), tasks));
   executor.run(tasks, [&](size_t task) {
     Pairs& pairs = found_[task];
     pairs.clear();
-    if (task < vertex_tasks) {
+    if (task < star_tasks) {
       const size_t begin = task * kStarBlock;
-      for (size_t i = begin; i < std::min(vertices_.size(), begin + kStarBlock); ++i) {
-        search_star(mesh, vertices_[i], pairs);
+      for (size_t i = begin; i < std::min(stars.size(), begin + kStarBlock); ++i) {
+        search_star(mesh, stars[i], pairs);
       }
     } else {
       const Spares<Scratch>::Lent scratch = scratches_.lend();
-      const size_t begin = (task - vertex_tasks) * kSearchBlock;
+      const size_t begin = (task - star_tasks) * kSearchBlock;
       for (size_t node = begin; node < std::min(nodes, begin + kSearchBlock); ++node) {
         search_leaves(mesh, executor.simd(), static_cast<uint32_t>(node), *scratch, pairs);
       }
@@ -329,6 +158,49 @@ const Vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t slot
   // Faces across an edge are found at both of its ends.
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+}
+
+const Vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t slots,
+                                            const Float4* positions, const uint8_t* marked,
+                                            const Executor& executor, const Float4* before) {
+  mesh_ = {rings, slots, positions, marked, before, nullptr};
+  pairs_.clear();
+  list_vertices(mesh_);
+  list_faces(mesh_, executor);
+  if (face_count() == 0) return pairs_;
+  build_leaves(mesh_, executor);
+  do build_level(level_count_, executor);
+  while (levels_[level_count_ - 1].boxes.size() > 1);
+  search(mesh_, {vertices_.data(), vertices_.size()}, executor);
+  return pairs_;
+}
+
+// The vertices that have changed and their neighbours, where faces around them are listed.
+void MeetingSearch::list_stars(const Mesh& mesh, const uint32_t* changed, size_t count) {
+  stars_.clear();
+  const auto list = [&](uint32_t v) {
+    if (listed_[v] != 0) stars_.push_back(v);
+  };
+  for (const uint32_t v : std::span(changed, count)) {
+    list(v);
+    for (uint32_t k = 0; k < mesh.rings.valence[v]; ++k) list(mesh.rings.slot(v, k));
+  }
+  std::sort(stars_.begin(), stars_.end());
+  stars_.erase(std::unique(stars_.begin(), stars_.end()), stars_.end());
+}
+
+const Vector<FacePair>& MeetingSearch::find_changed(const uint32_t* changed, size_t count,
+                                                    const Executor& executor) {
+  pairs_.clear();
+  if (face_count() == 0 || count == 0) return pairs_;
+  changed_.resize(std::max<size_t>(changed_.size(), mesh_.slots));
+  for (const uint32_t v : std::span(changed, count)) changed_[v] = 1;
+  Mesh mesh = mesh_;
+  mesh.changed = changed_.data();
+  update_tree(mesh, changed, count);
+  list_stars(mesh, changed, count);
+  search(mesh, stars_, executor);
+  for (const uint32_t v : std::span(changed, count)) changed_[v] = 0;
   return pairs_;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "engine/base/four.h"
 #include "engine/base/spares.h"
@@ -43,7 +44,14 @@ class MeetingSearch {
                                const uint8_t* marked, const Executor& executor,
                                const Float4* before = nullptr);
 
-  // The faces of the last call; none where nothing was marked.
+  // After find(), when a few vertices have moved since: the pairs that find() would list, of which
+  // one face has one of these vertices. changed: their ids, some twice; no other has moved since
+  // the last call of either. What find() was given must still be there. Takes the time of their
+  // faces, and of a byte per eight listed ones.
+  const Vector<FacePair>& find_changed(const uint32_t* changed, size_t count,
+                                       const Executor& executor);
+
+  // The faces of the last find(); none where nothing was marked.
   size_t face_count() const { return face_count_; }
   const uint32_t* face(uint32_t f) const { return faces_.data() + 3 * static_cast<size_t>(f); }
 
@@ -56,15 +64,18 @@ class MeetingSearch {
   };
   struct Mesh {
     RingView rings;
-    uint32_t slots;
-    const Float4* positions;
-    const uint8_t* marks;
-    const Float4* before;
+    uint32_t slots = 0;
+    const Float4* positions = nullptr;
+    const uint8_t* marks = nullptr;
+    const Float4* before = nullptr;
+    const uint8_t* changed =
+        nullptr;  // a byte per vertex, not 0 where it has moved; or NULL: see before
     bool marked(uint32_t v) const { return marks == nullptr || marks[v] != 0; }
     bool marked(const uint32_t* abc) const {
       return marked(abc[0]) || marked(abc[1]) || marked(abc[2]);
     }
     bool moved(uint32_t v) const {
+      if (changed != nullptr) return changed[v] != 0;
       return before == nullptr || !same_four(load_four(positions[v]), load_four(before[v]));
     }
     bool moved(const uint32_t* abc) const {
@@ -80,6 +91,10 @@ class MeetingSearch {
   void list_faces(const Mesh& mesh, const Executor& executor);
   void build_leaves(const Mesh& mesh, const Executor& executor);
   void build_level(size_t level, const Executor& executor);
+  void set_face(const Mesh& mesh, uint32_t f);
+  void set_child(size_t level, size_t child);
+  void update_tree(const Mesh& mesh, const uint32_t* changed, size_t count);
+  void list_stars(const Mesh& mesh, const uint32_t* changed, size_t count);
   void search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) const;
   struct Scratch {
     Vector<uint32_t> near;  // nodes of leaves
@@ -88,11 +103,16 @@ class MeetingSearch {
   void find_near(uint32_t node, Vector<uint32_t>& near) const;
   void search_leaves(const Mesh& mesh, SimdTarget simd, uint32_t node, Scratch& scratch,
                      Pairs& pairs) const;
+  void search(const Mesh& mesh, std::span<const uint32_t> stars, const Executor& executor);
   uint32_t index_of(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) const;
 
   Spares<Scratch> scratches_;
+  Mesh mesh_;                  // of the last find()
   Buffer<uint32_t> vertices_;  // ascending
   Buffer<uint8_t> listed_;     // per vertex
+  Buffer<uint8_t> changed_;    // per vertex; 0 between calls
+  Vector<uint32_t> stars_;     // around which faces are tested against each other
+  Vector<uint32_t> nodes_;     // that are brought up to date
   size_t face_count_ = 0;
   Buffer<uint32_t> faces_;
   Buffer<uint32_t> begin_;  // per listed vertex, and one more

@@ -45,23 +45,24 @@ void MotionGuard::assess(const Vector<uint32_t>& due, const Vector<uint32_t>& at
 
 int64_t MotionGuard::take_back(const Buffer<Float4>& before, SpatialHash& hash,
                                Vector<uint32_t>& back) {
-  int64_t taken_back = 0;
-  for (int64_t now = 1; now != 0; taken_back += now) {
-    now = 0;
-    const auto& pairs = search_.find(mesh_.rings(), mesh_.slots(), mesh_.position.data(),
-                                     risk_.data(), executor_, before.data());
-    for (const auto& [f, g] : pairs) {
-      now += put_back(search_.face(f), before, hash, back) +
-             put_back(search_.face(g), before, hash, back);
+  const size_t first = back.size();
+  const Vector<FacePair>* pairs = &search_.find(mesh_.rings(), mesh_.slots(), mesh_.position.data(),
+                                                risk_.data(), executor_, before.data());
+  // All corners of two faces that meet go back: what can meet then has a corner among them.
+  for (size_t done = first;; done = back.size()) {
+    for (const auto& [f, g] : *pairs) {
+      put_back(search_.face(f), before, hash, back);
+      put_back(search_.face(g), before, hash, back);
     }
+    if (back.size() == done) break;
+    pairs = &search_.find_changed(back.data() + done, back.size() - done, executor_);
   }
-  return taken_back;
+  return static_cast<int64_t>(back.size() - first);
 }
 
-// Returns how many of the face's vertices were not where they had been.
-int64_t MotionGuard::put_back(const uint32_t* face, const Buffer<Float4>& before, SpatialHash& hash,
-                              Vector<uint32_t>& back) {
-  int64_t count = 0;
+// Those corners of the face that are not where they had been.
+void MotionGuard::put_back(const uint32_t* face, const Buffer<Float4>& before, SpatialHash& hash,
+                           Vector<uint32_t>& back) {
   for (int i = 0; i < 3; ++i) {
     const uint32_t v = face[i];
     const Float4& b = before[v];
@@ -72,9 +73,7 @@ int64_t MotionGuard::put_back(const uint32_t* face, const Buffer<Float4>& before
     hash.insert(v, mesh_.at(v));
     back.push_back(v);
     mesh_.turns[v] = turned(mesh_.turns[v], 1);
-    ++count;
   }
-  return count;
 }
 
 }  // namespace plc

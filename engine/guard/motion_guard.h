@@ -43,8 +43,8 @@ class MotionGuard {
   void restore(StateReader& from) { risk_.restore(from); }
 
  private:
-  int64_t put_back(const uint32_t* face, const Buffer<Float4>& before, SpatialHash& hash,
-                   Vector<uint32_t>& back);
+  void put_back(const uint32_t* face, const Buffer<Float4>& before, SpatialHash& hash,
+                Vector<uint32_t>& back);
 
   Mesh& mesh_;
   const Executor& executor_;

@@ -229,6 +229,38 @@ TEST_CASE("of pairs that meet those are found of which a face has moved", "[meet
   }
 }
 
+TEST_CASE("when a few vertices have moved on, what meets now is found around them alone",
+          "[meeting_search]") {
+  Soup m = shaken(samples::torus(60, 30, 2, 0.7), 5, 0.02);
+  m.append(samples::moved(samples::sphere(3), 1.9, 0.2, 0.1));
+  samples::Rings r = samples::rings_of(m);
+  for (const unsigned percent : {30U, 100U}) {
+    const auto marked = random_vertices(r.slots(), 11, percent);
+    plc::MeetingSearch search, anew;
+    search.find(r.view(), r.slots(), r.positions.data(), marked.data(), plc::SerialExecutor());
+    size_t meeting = 0;
+    for (unsigned seed = 0; seed < 6; ++seed) {
+      const samples::Rings before = r;
+      const auto chosen = random_vertices(r.slots(), seed, seed == 0 ? 40 : 2);
+      plc::Vector<uint32_t> changed;
+      std::mt19937 bits(seed);
+      std::normal_distribution<float> step(0, 0.15F);
+      for (uint32_t v = 0; v < r.slots(); ++v) {
+        if (chosen[v] == 0) continue;
+        r.positions[v].x += step(bits);
+        r.positions[v].y += step(bits);
+        changed.insert(changed.end(), {v, v});
+      }
+      const auto pairs = search.find_changed(changed.data(), changed.size(), plc::SerialExecutor());
+      CHECK(pairs == anew.find(r.view(), r.slots(), r.positions.data(), marked.data(),
+                               plc::SerialExecutor(), before.positions.data()));
+      meeting += pairs.size();
+    }
+    CHECK(meeting > 100);
+    CHECK(search.find_changed(nullptr, 0, plc::SerialExecutor()).empty());
+  }
+}
+
 TEST_CASE("every SIMD target finds the same pairs", "[meeting_search]") {
   const samples::Rings r = samples::rings_of(shaken(samples::torus(90, 40, 2, 0.7), 9, 0.09));
   plc::MeetingSearch search;
