@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include "engine/base/constants.h"
 #include "engine/start/voxel_sides.h"
@@ -15,6 +16,9 @@ namespace plc {
 namespace {
 
 using Sets = std::array<VoxelSet, 2>;  // by Missed
+
+// Slices that a task clears around the mesh, and voxels on a side of the squares of what is left.
+constexpr size_t kSlab = 8, kSquare = 4;
 
 // The voxels on which the image and the surface disagree.
 class Disagreement {
@@ -69,28 +73,41 @@ class Search {
     for (size_t a = 0; a < 3; ++a) length_[a] = 1 / image.scale[a];
   }
 
-  // Nothing within `clearance` of a vertex is missed.
-  void clear_near(const Mesh& mesh, float clearance) {
+  // Nothing within `clearance` of a vertex is missed; nor of a face, which may be larger, where
+  // `apart` is not 0: between the places of it that are looked at are no more than that.
+  void clear_near(const Mesh& mesh, float apart, float clearance, const Executor& executor) {
+    const auto slabs = (static_cast<size_t>(image_.dims[2]) + kSlab - 1) / kSlab;
+    std::vector<Vector<uint32_t>> vertices(slabs), faces(slabs);
+    const float reach = clearance / length_[2] + 1;  // places on a face are rounded
+    const auto list = [&](std::vector<Vector<uint32_t>>& lists, float low, float high,
+                          uint32_t what) {
+      const float last = static_cast<float>(image_.dims[2] - 1);
+      const auto begin = static_cast<size_t>(std::clamp(low - reach, 0.0F, last)) / kSlab;
+      const auto end = static_cast<size_t>(std::clamp(high + reach, 0.0F, last)) / kSlab;
+      for (size_t slab = begin; slab <= end; ++slab) lists[slab].push_back(what);
+    };
+    const auto z_of = [&](uint32_t v) { return voxel_of(mesh.at(v))[2]; };
     for (uint32_t v = 0; v < mesh.slots(); ++v) {
-      if (mesh.alive(v)) clear_near(mesh.at(v), clearance);
+      if (mesh.alive(v)) list(vertices, z_of(v), z_of(v), v);
     }
-  }
-  // ... nor of a face, which may be larger. Between the places that are looked at are no more than
-  // `apart`.
-  void clear_near_faces(const Mesh& mesh, float apart, float clearance) {
-    const Vector<uint32_t> faces = mesh.faces();
-    for (size_t f = 0; f < faces.size(); f += 3) {
-      const Vec3 a = mesh.at(faces[f]), b = mesh.at(faces[f + 1]), c = mesh.at(faces[f + 2]);
-      const float longest = std::max(std::max(length(b - a), length(c - b)), length(a - c));
-      const int steps = static_cast<int>(std::ceil(longest / apart));
-      for (int i = 0; i <= steps && steps > 1; ++i) {
-        for (int j = 0; i + j <= steps; ++j) {
-          const float u = static_cast<float>(i) / static_cast<float>(steps);
-          const float w = static_cast<float>(j) / static_cast<float>(steps);
-          clear_near(a + (b - a) * u + (c - a) * w, clearance);
-        }
+    const Vector<uint32_t> corners = apart > 0 ? mesh.faces() : Vector<uint32_t>();
+    for (size_t c = 0; c < corners.size(); c += 3) {
+      const auto [low, high] =
+          std::minmax({z_of(corners[c]), z_of(corners[c + 1]), z_of(corners[c + 2])});
+      list(faces, low, high, static_cast<uint32_t>(c));
+    }
+    executor.run(slabs, [&](size_t index) {
+      const auto first = static_cast<int32_t>(index * kSlab);
+      const Slab slab{first, std::min(first + static_cast<int32_t>(kSlab), image_.dims[2]),
+                      clearance};
+      for (const uint32_t v : vertices[index]) clear_near(mesh.at(v), slab);
+      if (faces[index].empty()) return;
+      const Columns left = columns_left(slab);
+      for (const uint32_t c : faces[index]) {
+        clear_near_face({mesh.at(corners[c]), mesh.at(corners[c + 1]), mesh.at(corners[c + 2])},
+                        apart, slab, left);
       }
-    }
+    });
   }
 
   // The voxels whose boxes a ball touches, about a voxel's centre and about a corner of voxels.
@@ -147,21 +164,89 @@ class Search {
   }
 
  private:
-  void clear_near(Vec3 p, float clearance) {
-    const float at[3] = {p.x, p.y, p.z};
+  // Slices first .. end - 1, of which one task clears voxels.
+  struct Slab {
+    int32_t first, end;
+    float clearance;
+  };
+  struct VoxelBox {
     Voxel low, high;
-    std::array<float, 3> centre;
+  };
+
+  std::array<float, 3> voxel_of(Vec3 p) const {
+    return {image_.scale[0] * p.x + image_.offset[0], image_.scale[1] * p.y + image_.offset[1],
+            image_.scale[2] * p.z + image_.offset[2]};
+  }
+  // The voxels of the slab within its clearance of low .. high on every axis.
+  VoxelBox box_around(const std::array<float, 3>& low, const std::array<float, 3>& high,
+                      const Slab& slab) const {
+    VoxelBox box;
     for (size_t a = 0; a < 3; ++a) {
-      centre[a] = image_.scale[a] * at[a] + image_.offset[a];
-      const float reach = clearance / length_[a];
-      low[a] = std::max(0, static_cast<int32_t>(std::ceil(centre[a] - reach)));
-      high[a] = std::min(image_.dims[a] - 1, static_cast<int32_t>(std::floor(centre[a] + reach)));
+      const float reach = slab.clearance / length_[a];
+      box.low[a] = std::max(0, static_cast<int32_t>(std::ceil(low[a] - reach)));
+      box.high[a] = std::min(image_.dims[a] - 1, static_cast<int32_t>(std::floor(high[a] + reach)));
     }
-    for (int32_t z = low[2]; z <= high[2]; ++z) {
-      for (int32_t y = low[1]; y <= high[1]; ++y) {
-        clear_row(centre, clearance, y, z, low[0], high[0]);
+    box.low[2] = std::max(box.low[2], slab.first);
+    box.high[2] = std::min(box.high[2], slab.end - 1);
+    return box;
+  }
+  void clear_near(Vec3 p, const Slab& slab) {
+    const std::array<float, 3> centre = voxel_of(p);
+    const VoxelBox box = box_around(centre, centre, slab);
+    for (int32_t z = box.low[2]; z <= box.high[2]; ++z) {
+      for (int32_t y = box.low[1]; y <= box.high[1]; ++y) {
+        clear_row(centre, slab.clearance, y, z, box.low[0], box.high[0]);
       }
     }
+  }
+  // Whether anything is missed in the slab, by squares of kSquare voxels of x and y: most faces are
+  // far from all that is left.
+  using Columns = Vector<uint8_t>;
+  Columns columns_left(const Slab& slab) const {
+    Columns left(squares(0) * squares(1), 0);
+    for (int32_t z = slab.first; z < slab.end; ++z) {
+      for (int32_t y = 0; y < image_.dims[1]; ++y) {
+        for (const VoxelSet& set : missed_) {
+          set.visit_row(y, z, 0, image_.dims[0], [&](int32_t x) { left[square(x, y)] = 1; });
+        }
+      }
+    }
+    return left;
+  }
+  size_t squares(size_t axis) const { return static_cast<size_t>(image_.dims[axis]) / kSquare + 1; }
+  size_t square(int32_t x, int32_t y) const {
+    return static_cast<size_t>(y) / kSquare * squares(0) + static_cast<size_t>(x) / kSquare;
+  }
+  void clear_near_face(const std::array<Vec3, 3>& p, float apart, const Slab& slab,
+                       const Columns& left) {
+    const Vec3 a = p[0], b = p[1], c = p[2];
+    const float longest = std::max(std::max(length(b - a), length(c - b)), length(a - c));
+    const int steps = static_cast<int>(std::ceil(longest / apart));
+    if (steps <= 1 || !any_near(p, slab, left)) return;
+    for (int i = 0; i <= steps; ++i) {
+      for (int j = 0; i + j <= steps; ++j) {
+        const float u = static_cast<float>(i) / static_cast<float>(steps);
+        const float w = static_cast<float>(j) / static_cast<float>(steps);
+        clear_near(a + (b - a) * u + (c - a) * w, slab);
+      }
+    }
+  }
+  // A voxel more, as places on a face are rounded.
+  bool any_near(const std::array<Vec3, 3>& p, const Slab& slab, const Columns& left) const {
+    const std::array<float, 3> q[3] = {voxel_of(p[0]), voxel_of(p[1]), voxel_of(p[2])};
+    std::array<float, 3> low, high;
+    for (size_t a = 0; a < 3; ++a) {
+      low[a] = std::min({q[0][a], q[1][a], q[2][a]}) - 1;
+      high[a] = std::max({q[0][a], q[1][a], q[2][a]}) + 1;
+    }
+    const VoxelBox box = box_around(low, high, slab);
+    constexpr auto kStep = static_cast<int32_t>(kSquare);
+    for (int32_t y = box.low[1] / kStep * kStep; y <= box.high[1]; y += kStep) {
+      for (int32_t x = box.low[0] / kStep * kStep; x <= box.high[0]; x += kStep) {
+        if (left[square(x, y)] != 0) return true;
+      }
+    }
+    return false;
   }
   void clear_row(const std::array<float, 3>& centre, float clearance, int32_t y, int32_t z,
                  int32_t low, int32_t high) {
@@ -240,11 +325,10 @@ MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object, flo
                  [&](size_t z) { disagreement.add(static_cast<int32_t>(z), missed); });
   }
   Search search(image, missed);
-  search.clear_near(mesh, clearance);
-  if (mesh.sizing != nullptr) {
-    const auto delta = static_cast<float>(mesh.delta);
-    search.clear_near_faces(mesh, kMaxEdge * mesh.sizing->field.finest() * delta, clearance);
-  }
+  const float apart = mesh.sizing == nullptr
+                          ? 0
+                          : kMaxEdge * mesh.sizing->field.finest() * static_cast<float>(mesh.delta);
+  search.clear_near(mesh, apart, clearance, executor);
   search.list_ball(radius);
   MissedPlaces places;
   places.low.fill({image.dims[0], image.dims[1], image.dims[2]});
