@@ -443,9 +443,18 @@ typedef struct plc_extras {
   int64_t attachment_count;
   const plc_pin* pins;
   int64_t pin_count;
+  /* Faces that never move, and that the surface does not meet, exactly, nor pass over as a whole;
+     where it comes nearer to them than the gap it is held. They may be open, and meet each other;
+     none has zero area. levels and late_bubbles are 0 then. A surface to start from that meets them
+     is refused with PLC_INVALID_DATA. 3 * obstacle_vertex_count, 3 * obstacle_face_count. */
+  const double* obstacle_xyz;
+  int64_t obstacle_vertex_count;
+  const uint32_t* obstacle_abc;
+  int64_t obstacle_face_count;
+  double obstacle_gap; /* 0 .. 1, in delta: what lies nearer at the start comes no nearer */
 } plc_extras;
 
-/* Nothing, PLC_SPACE_LPS. */
+/* Nothing, PLC_SPACE_LPS, an obstacle_gap of 0. */
 PLC_API void plc_extras_defaults(plc_extras* extras);
 
 /* ---- extraction ------------------------------------------------------------------------- */

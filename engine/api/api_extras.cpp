@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/api/handles.h"
+#include "engine/exact/triangle_intersection.h"
 #include "pyramid/check_volume.h"
 
 namespace plc {
@@ -83,6 +84,7 @@ Status check_ball(const std::string& name, const double* place, double radius,
 
 constexpr int64_t kMostPlaces = int64_t{1} << 24U;
 constexpr int64_t kMostOfMesh = int64_t{1} << 32U;
+constexpr double kFarthest = 1e30;  // of obstacles: far beyond any image
 
 // Before anything of it is read.
 Status check_array(const char* name, const void* data, int64_t count, int64_t most) {
@@ -114,6 +116,37 @@ Status check_mask(const plc_image* given, const VolumeView& image, plc_image& ma
 Status check_start(const plc_extras& e, const plc_parameters& p) {
   if (p.init == PLC_INIT_SEEDS && e.seed_count == 0) return bad_argument("seeds: none given");
   if (p.init == PLC_INIT_MESH && e.mesh_face_count == 0) return bad_argument("mesh: none given");
+  return {};
+}
+
+// All but what is said of whole arrays.
+Status check_obstacles(const plc_extras& e, const plc_parameters& p) {
+  if (!(e.obstacle_gap >= 0 && e.obstacle_gap <= 1)) {
+    return bad_argument("obstacle gap " + number_text(e.obstacle_gap) + " is not within 0 .. 1");
+  }
+  if (e.obstacle_face_count == 0) return {};
+  if (p.levels != 0 || p.late_bubbles != 0) {
+    return bad_argument("obstacles: levels and late_bubbles must be 0 with them");
+  }
+  for (int64_t i = 0; i < 3 * e.obstacle_vertex_count; ++i) {
+    if (!(std::abs(e.obstacle_xyz[i]) <= kFarthest)) {
+      return bad_argument("obstacles: vertex " + std::to_string(i / 3) + " lies at " +
+                          number_text(e.obstacle_xyz[i]));
+    }
+  }
+  for (int64_t f = 0; f < e.obstacle_face_count; ++f) {
+    const uint32_t* abc = e.obstacle_abc + 3 * f;
+    for (int k = 0; k < 3; ++k) {
+      if (abc[k] < e.obstacle_vertex_count) continue;
+      return bad_argument("obstacles: face " + std::to_string(f) + " refers to vertex " +
+                          std::to_string(abc[k]) + " of " +
+                          std::to_string(e.obstacle_vertex_count));
+    }
+    const Triangle t = make_triangle(e.obstacle_xyz, abc);
+    if (collinear(t.corner[0], t.corner[1], t.corner[2])) {
+      return bad_argument("obstacles: face " + std::to_string(f) + " has no area");
+    }
+  }
   return {};
 }
 
@@ -153,9 +186,13 @@ Status check_extras(const plc_extras* given, const plc_parameters& p, const Volu
         check_array("mesh vertices", e.mesh_xyz, e.mesh_vertex_count, kMostOfMesh),
         check_array("mesh faces", e.mesh_abc, e.mesh_face_count, kMostOfMesh),
         check_array("attachments", e.attachments, e.attachment_count, kMostPlaces),
-        check_array("pins", e.pins, e.pin_count, kMostPlaces), check_start(e, p)}) {
+        check_array("pins", e.pins, e.pin_count, kMostPlaces),
+        check_array("obstacle vertices", e.obstacle_xyz, e.obstacle_vertex_count, kMostOfMesh),
+        check_array("obstacle faces", e.obstacle_abc, e.obstacle_face_count, kMostOfMesh - 1),
+        check_start(e, p)}) {
     if (!s.ok()) return s;
   }
+  if (Status s = check_obstacles(e, p); !s.ok()) return s;
   const Bounds bounds(image, frame, e.space);
   for (int64_t i = 0; i < e.seed_count; ++i) {
     const std::string name = "seed " + std::to_string(i);
@@ -201,6 +238,13 @@ void take_extras(const plc_extras& e, const Frame& frame, RecoverySpec& spec) {
     spec.user.pins.push_back({place(e.pins[i].place), static_cast<float>(e.pins[i].radius)});
   }
   spec.user.cosines = cosines_of(frame);
+  if (e.obstacle_face_count > 0) {
+    VoxelMesh obstacles = in_voxels(to_space, mesh_arrays(e.obstacle_xyz, e.obstacle_vertex_count,
+                                                          e.obstacle_abc, e.obstacle_face_count));
+    spec.obstacle_xyz = std::move(obstacles.xyz);
+    spec.obstacle_abc = std::move(obstacles.abc);
+    spec.obstacle_gap = e.obstacle_gap;
+  }
   if (spec.start.init != Init::kMesh) return;
   VoxelMesh mesh = in_voxels(
       to_space, mesh_arrays(e.mesh_xyz, e.mesh_vertex_count, e.mesh_abc, e.mesh_face_count));

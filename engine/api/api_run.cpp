@@ -82,6 +82,8 @@ Status Run::prepare(std::shared_ptr<const PyramidData> pyramid, Pyramid images, 
   extras_.mesh_abc = nullptr;
   extras_.attachments = nullptr;
   extras_.pins = nullptr;
+  extras_.obstacle_xyz = nullptr;
+  extras_.obstacle_abc = nullptr;
   if (Status s = check_cost(images, spec); !s.ok()) return s;
   recovery_.emplace(std::move(images), std::move(spec), host_->schedule, hooks(), surface_->mesh,
                     surface_->records);
@@ -248,6 +250,7 @@ std::unique_ptr<plc_surface> Run::surface() const {
   copy->host = host_;
   copy->mesh.take(surface_->mesh.copy());
   copy->mesh.sizing = nullptr;  // the run's own
+  copy->mesh.obstacles = nullptr;
   if (!copy->mesh.in_order()) {
     copy->mesh.renumber(morton_order(copy->mesh, host_->schedule), host_->schedule);
   }

@@ -106,6 +106,11 @@ uint64_t given_hash(const RecoverySpec& spec) {
     hash.add(static_cast<uint64_t>(n));
   }
   hash.add(static_cast<uint32_t>(spec.force ? 1 : 0));
+  if (!spec.obstacle_abc.empty()) {
+    hash.add_all(spec.obstacle_xyz);
+    hash.add_all(spec.obstacle_abc);
+    hash.add(spec.obstacle_gap);
+  }
   return hash.value();
 }
 

@@ -92,20 +92,21 @@ void TinyComponents::start_floods(const Mesh& mesh) {
   first_flood_ = flood_ + 1;
 }
 
-int64_t TinyComponents::delete_turned_over(Mesh& mesh) {
+int64_t TinyComponents::delete_turned_over(Mesh& mesh, const Stays& stays) {
   start_floods(mesh);
   int64_t deleted = 0;
   for (const Watched& w : watched_) {
     const auto& component = flood(mesh, w.vertex);
     if (component.empty()) continue;  // only in a forged state
     if ((signed_volume(mesh, component) > 0) == (w.positive != 0)) continue;
+    if (stays && stays(component)) continue;
     for (const uint32_t v : component) mesh.destroy(v);
     ++deleted;
   }
   return deleted;
 }
 
-int64_t TinyComponents::update(Mesh& mesh, const Vector<uint32_t>& changed) {
+int64_t TinyComponents::update(Mesh& mesh, const Vector<uint32_t>& changed, const Stays& stays) {
   start_floods(mesh);
   Vector<Watched> still;
   int64_t deleted = 0;
@@ -116,7 +117,8 @@ int64_t TinyComponents::update(Mesh& mesh, const Vector<uint32_t>& changed) {
     const auto size = static_cast<double>(mesh.size(component[0]));
     const double least = kTinyVolume * size * size * size;
     const bool positive = known != nullptr ? known->positive != 0 : volume > 0;
-    if ((volume > 0) != positive || std::abs(volume) < least) {
+    const bool vanishes = (volume > 0) != positive || std::abs(volume) < least;
+    if (vanishes && !(stays && stays(component))) {
       for (const uint32_t w : component) mesh.destroy(w);
       ++deleted;
     } else {

@@ -1,6 +1,8 @@
 // Deletion of tetrahedra and of tiny components that turn inside out (3.3).
 #pragma once
 
+#include <functional>
+
 #include "engine/base/state_io.h"
 #include "engine/mesh/mesh.h"
 #include "pyramid/memory.h"
@@ -15,15 +17,18 @@ void delete_tetrahedron(Mesh& mesh, uint32_t v);
 // between two fronts, inverts without violating (1)-(3) and would stay for ever.
 class TinyComponents {
  public:
+  // Whether a component, given by its vertices, has to stay whatever becomes of it; null: none has.
+  using Stays = std::function<bool(const Vector<uint32_t>& component)>;
+
   // Looks at every vertex: at the start of a level.
   void start(Mesh& mesh);
   // Deletes the components followed so far that a movement has turned over. Returns how many. No
   // vertex was created or deleted since the last look: a component is known by one of its vertices.
-  int64_t delete_turned_over(Mesh& mesh);
+  int64_t delete_turned_over(Mesh& mesh, const Stays& stays = nullptr);
   // Looks at the components followed so far and at those of `changed`; deletes what has turned over
   // or nearly vanished. Returns how many were deleted. The sign of a component whose known vertex
   // is gone is taken anew: what the movement has turned over must have been deleted before.
-  int64_t update(Mesh& mesh, const Vector<uint32_t>& changed);
+  int64_t update(Mesh& mesh, const Vector<uint32_t>& changed, const Stays& stays = nullptr);
   // What is followed, for a mesh of so many ids.
   void save(StateWriter& to) const { to.add_all(watched_); }
   void restore(StateReader& from, uint32_t slots);

@@ -37,6 +37,11 @@ class FaceTree {
   template <typename Visit>
   void along_segment(const Point3& s, const Point3& e, const Visit& visit) const;
 
+  // Calls visit(f) for every face whose box overlaps the closed box low .. high, always in the same
+  // order.
+  template <typename Visit>
+  void within(const double* low, const double* high, const Visit& visit) const;
+
   // The least of `limit` and squared(f) over the faces f: squared() must tell the squared distance
   // from p to face f. It is asked for faces alone whose box is nearer than the least so far, boxes
   // near p first.
@@ -180,6 +185,29 @@ void FaceTree::along_segment(const Point3& s, const Point3& e, const Visit& visi
     const size_t first = node.first_leaf * static_cast<size_t>(kLeafFaces);
     for (uint32_t k = 0; k < kLeafFaces && first + k < count_; ++k) {
       if (meets(box_of(leaf, k))) visit(leaf.face[k]);
+    }
+  }
+}
+
+template <typename Visit>
+void FaceTree::within(const double* low, const double* high, const Visit& visit) const {
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.low[axis] = low[axis];
+    box.high[axis] = high[axis];
+  }
+  for (size_t i = 0; i < nodes_.size();) {
+    const Node& node = nodes_[i];
+    if (!overlap(node.box, box)) {
+      i += 2 * static_cast<size_t>(node.leaf_count) - 1;
+      continue;
+    }
+    ++i;
+    if (node.leaf_count > 1) continue;
+    const Leaf& leaf = leaves_[node.first_leaf];
+    const size_t first = node.first_leaf * static_cast<size_t>(kLeafFaces);
+    for (uint32_t k = 0; k < kLeafFaces && first + k < count_; ++k) {
+      if (overlap(box_of(leaf, k), box)) visit(leaf.face[k]);
     }
   }
 }

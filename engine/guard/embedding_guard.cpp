@@ -4,6 +4,7 @@
 
 #include "engine/base/constants.h"
 #include "engine/exact/vertex_star.h"
+#include "engine/guard/obstacles.h"
 #include "engine/transform/deletion.h"
 #include "pyramid/memory.h"
 
@@ -57,6 +58,32 @@ bool ring_is_embedded(const Mesh& mesh, const Proposal::RingChange& change) {
     if (w == change.neighbor) fan.add(change.place);
   }
   return fan.is_embedded();
+}
+
+// visit(a, b) of the faces (v, a, b) around v.
+template <typename Visit>
+void visit_faces(const Mesh& mesh, uint32_t v, const Visit& visit) {
+  const uint32_t d = mesh.valence(v);
+  for (uint32_t k = 0; k < d; ++k)
+    visit(mesh.neighbor(v, k), mesh.neighbor(v, k + 1 == d ? 0 : k + 1));
+}
+
+// Each once: from the first of its corners among those that go, or from one end of the edge.
+Vector<Corners> faces_that_go(const Mesh& mesh, const Proposal& proposal) {
+  Vector<Corners> faces;
+  const auto& gone = proposal.removed_corners;
+  for (auto c = gone.begin(); c != gone.end(); ++c) {
+    const auto earlier = [&](uint32_t v) { return std::find(gone.begin(), c, v) != c; };
+    visit_faces(mesh, *c, [&](uint32_t a, uint32_t b) {
+      if (!earlier(a) && !earlier(b)) faces.push_back({mesh.at(*c), mesh.at(a), mesh.at(b)});
+    });
+  }
+  const uint32_t u = proposal.removed_edge[0], w = proposal.removed_edge[1];
+  if (!gone.empty()) return faces;
+  visit_faces(mesh, u, [&](uint32_t a, uint32_t b) {
+    if (a == w || b == w) faces.push_back({mesh.at(u), mesh.at(a), mesh.at(b)});
+  });
+  return faces;
 }
 
 }  // namespace
@@ -232,11 +259,22 @@ bool EmbeddingGuard::embeds(const Mesh& mesh, const SpatialHash& hash, const Pro
   hash.collect(mesh, {searched.low[0], searched.low[1], searched.low[2]},
                {searched.high[0], searched.high[1], searched.high[2]}, around_);
   // Each face once: from its smallest corner within the box.
-  return clear_of(mesh, proposal, around_.ids.data(), around_.ids.size(),
+  return (mesh.obstacles == nullptr || clear_of_obstacles(mesh, proposal)) &&
+         clear_of(mesh, proposal, around_.ids.data(), around_.ids.size(),
                   [&](uint32_t x, uint32_t a, uint32_t b) {
                     return (a > x || !contains(searched, mesh.position[a])) &&
                            (b > x || !contains(searched, mesh.position[b]));
                   });
+}
+
+bool EmbeddingGuard::clear_of_obstacles(const Mesh& mesh, const Proposal& proposal) const {
+  Vector<Corners> now;
+  for (const auto& face : proposal.faces) now.push_back(face.place);
+  const Vector<Corners> before = faces_that_go(mesh, proposal);
+  for (const Corners& face : now) {
+    if (mesh.obstacles->refuse(face, before.data(), before.size())) return false;
+  }
+  return !mesh.obstacles->passed_over(before, now);
 }
 
 bool EmbeddingGuard::embeds_beside(const Mesh& mesh, const Proposal& proposal,

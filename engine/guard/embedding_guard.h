@@ -51,8 +51,9 @@ Proposal propose_axial(const Mesh& mesh, const AxialPlan& plan);
 class EmbeddingGuard {
  public:
   // True when no new face meets another new face, or a face that stays, elsewhere than in common
-  // corners and edges; exact. The hash must hold every living vertex at its place. Faces with edges
-  // beyond those that kFaceReach allows for may be overlooked.
+  // corners and edges, or an obstacle of the mesh, and none of those is passed over; exact. The
+  // hash must hold every living vertex at its place. Faces with edges beyond those that kFaceReach
+  // allows for may be overlooked.
   bool embeds(const Mesh& mesh, const SpatialHash& hash, const Proposal& proposal);
   // Of the faces that stay only those around these vertices, and no new faces against each other.
   bool embeds_beside(const Mesh& mesh, const Proposal& proposal, const Vector<uint32_t>& centres);
@@ -62,6 +63,7 @@ class EmbeddingGuard {
  private:
   void take(const Mesh& mesh, const Proposal& proposal);
   bool new_faces_meet() const;
+  bool clear_of_obstacles(const Mesh& mesh, const Proposal& proposal) const;
   uint32_t embedded_corners(const uint32_t* abc) const;
   template <typename Counts>
   bool clear_of(const Mesh& mesh, const Proposal& proposal, const uint32_t* ids, size_t count,

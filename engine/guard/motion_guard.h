@@ -1,5 +1,6 @@
 // Going past the paper: a movement that would make the surface meet itself is taken back.
 #pragma once
+#include <array>
 #include <cstdint>
 
 #include "engine/detect/risk.h"
@@ -15,7 +16,8 @@ namespace plc {
 // The surface before a movement does not meet itself. Where it does after it, the vertices of the
 // faces that meet go back to where they were and lose their speed; again, until none meet: in the
 // worst case all are back where they started. Only faces with a vertex at risk (risk.h) are tested,
-// against each other, and only where one of the two has moved.
+// against each other, and only where one of the two has moved. Where the mesh has obstacles every
+// face that has moved is tested against those.
 //
 //   risk           1      flags         of risk.h; attached to the mesh
 class MotionGuard {
@@ -43,6 +45,17 @@ class MotionGuard {
   void restore(StateReader& from) { risk_.restore(from); }
 
  private:
+  // What one task has found of the faces that have moved: those that an obstacle refuses, and those
+  // that a component of the obstacles is near.
+  struct Pressed {
+    Vector<std::array<uint32_t, 3>> refused, near;
+  };
+  bool keep_clear(const Buffer<Float4>& before, SpatialHash& hash, Vector<uint32_t>& back);
+  void press(size_t begin, size_t end, const Buffer<Float4>& before, Pressed& found) const;
+  bool passes_over(const Buffer<Float4>& before) const;
+  template <typename Visit>
+  void visit_moved(size_t begin, size_t end, const Buffer<Float4>& before,
+                   const Visit& visit) const;
   void put_back(const uint32_t* face, const Buffer<Float4>& before, SpatialHash& hash,
                 Vector<uint32_t>& back);
 
@@ -53,6 +66,7 @@ class MotionGuard {
   Vector<Vector<uint32_t>> found_;  // newly folded, by task
   Vector<uint32_t> newly_folded_;
   MeetingSearch search_;
+  Vector<Pressed> pressed_;  // by task
 };
 
 }  // namespace plc

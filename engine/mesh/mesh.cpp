@@ -225,6 +225,7 @@ void Mesh::clear() {
   Mesh empty;
   empty.delta = delta;
   empty.sizing = sizing;
+  empty.obstacles = obstacles;
   empty.stretch = stretch;
   empty.longest_edge = longest_edge;
   empty.most_vertices = most_vertices;
@@ -281,6 +282,7 @@ void Mesh::renumber(const Vector<uint32_t>& order, const Executor& executor) {
   Mesh to;
   to.delta = delta;
   to.sizing = sizing;
+  to.obstacles = obstacles;
   to.stretch = stretch;
   to.longest_edge = longest_edge;
   to.most_vertices = most_vertices;

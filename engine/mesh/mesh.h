@@ -18,6 +18,7 @@
 
 namespace plc {
 
+class Obstacles;
 class StateReader;
 class StateWriter;
 
@@ -81,6 +82,8 @@ class Mesh {
   double delta = 1;
   // By how much delta is larger or smaller, by place; null: by nothing. Borrowed.
   const Sizing* sizing = nullptr;
+  // What the surface may not meet (guard/obstacles.h); null: nothing. Borrowed.
+  const Obstacles* obstacles = nullptr;
   // By how much edges may be longer than (2) has them at the sizes of their ends: more where a
   // level starts with the mesh of another.
   float stretch = 1;

@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "engine/base/constants.h"
+#include "engine/guard/obstacles.h"
 #include "engine/guard/self_meeting.h"
 #include "engine/mesh/mesh_invariants.h"
 
@@ -12,7 +13,9 @@ namespace {
 
 // The promise of every iteration; debug builds hold it to it.
 [[maybe_unused]] bool sound(const Mesh& mesh, const Executor& executor) {
-  return broken_invariant(mesh).empty() && meeting_faces(mesh, executor).empty();
+  Obstacles::Meeting meeting;
+  return broken_invariant(mesh).empty() && meeting_faces(mesh, executor).empty() &&
+         (mesh.obstacles == nullptr || !mesh.obstacles->find_meeting(mesh, meeting));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/base/constants.h"
+#include "engine/exact/predicates.h"
 #include "engine/mesh/face_rings.h"
 #include "engine/recover/cost.h"
 #include "engine/recover/frozen_sites.h"
@@ -128,6 +129,7 @@ void Recovery::enter(int h) {
   const MeshSpace before = space_;
   space_ = mesh_space(pyramid_, h, spec_.anisotropy);
   mesh_.sizing = nullptr;
+  if (!spec_.obstacle_abc.empty() && !obstacles_) place_obstacles();
   if (mesh_.vertex_count() != 0) change_space(mesh_, before, space_);
   guide_.image = image_view(pyramid_, h, spec_.pad_voxels, space_);
   guide_.iso = iso_of(h).value_or(0);
@@ -149,6 +151,17 @@ void Recovery::enter(int h) {
     };
   }
   guide_.user = &user_;
+}
+
+void Recovery::place_obstacles() {
+  Vector<double> xyz = std::move(spec_.obstacle_xyz);
+  for (size_t i = 0; i < xyz.size(); ++i) {
+    xyz[i] *= space_.step[i % 3];
+    if (std::abs(xyz[i]) < kPredicateMin) xyz[i] = 0;
+  }
+  obstacles_.emplace(std::move(xyz), std::move(spec_.obstacle_abc),
+                     spec_.obstacle_gap * delta_of(0), schedule_);
+  mesh_.obstacles = &*obstacles_;
 }
 
 // The image that the gradient force (8) samples: its gradients are per U_h, with lengths measured
@@ -300,6 +313,10 @@ void Recovery::check() {
 Status Recovery::verify() {
   constexpr int kRepairs = 50;
   if (evolution_.embedded()) {
+    Obstacles::Meeting meeting;
+    if (obstacles_ && obstacles_->find_meeting(mesh_, meeting)) {
+      return {ErrorCode::kInternal, "the surface meets an obstacle"};
+    }
     phase_ = Phase::kRoundEnd;
     return {};
   }
@@ -356,7 +373,10 @@ Status Recovery::leave_level() {
             "use weaker internal forces"};
   }
   done_ = done_ || level_ == 0;
-  if (done_) mesh_.sizing = nullptr;
+  if (done_) {
+    mesh_.sizing = nullptr;
+    mesh_.obstacles = nullptr;
+  }
   phase_ = Phase::kStart;
   if (done_) {
     progress_.fraction = 1;

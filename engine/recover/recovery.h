@@ -10,6 +10,7 @@
 #include "engine/base/schedule.h"
 #include "engine/base/state_io.h"
 #include "engine/base/statistics.h"
+#include "engine/guard/obstacles.h"
 #include "engine/mesh/mesh.h"
 #include "engine/mesh/mesh_space.h"
 #include "engine/motion/dynamics.h"
@@ -42,7 +43,12 @@ struct RecoverySpec {
   StartSpec start;
   // Attachments and pins, their places in voxel indices of the unpadded I_0; the force is not read.
   UserConstraints user;
-  LevelForce force;  // may be empty
+  // What the surface may not meet on I_0, the only level then (guard/obstacles.h): three voxel
+  // indices of the unpadded I_0 per vertex, three vertices per face; no late bubbles are started.
+  Vector<double> obstacle_xyz;
+  Vector<uint32_t> obstacle_abc;
+  double obstacle_gap = 0;  // delta
+  LevelForce force;         // may be empty
   bool late_bubbles = true;
   bool sleeping = true;       // sleep.h; never with a user's force, which may change at any time
   bool slow_vertices = true;  // 3.6; false: every vertex is checked in every iteration
@@ -145,6 +151,7 @@ class Recovery {
   Status step();
   Status start_level();
   void enter(int h);
+  void place_obstacles();
   Status build_gradient_image();
   Status build_sizing();
   Status adapt();
@@ -191,7 +198,8 @@ class Recovery {
   MeshSpace space_;
   Sizing sizing_;  // of the level, where the mesh is adaptive
   Guide guide_;
-  UserConstraints user_;     // in the space of the level
+  UserConstraints user_;  // in the space of the level
+  std::optional<Obstacles> obstacles_;
   Buffer<Float4> gradient_;  // of the level
   VoxelSet tried_;           // voxels of the level's late bubbles
   double energy_ = 0;        // of the last iteration on any level

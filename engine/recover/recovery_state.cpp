@@ -110,6 +110,9 @@ bool Recovery::restore(StateReader& from) {
   evolution_.restore(from);
   if (!from.ok()) return false;
   if (!meeting_faces(mesh_, schedule_).empty()) return false;
+  if (Obstacles::Meeting meeting; obstacles_ && obstacles_->find_meeting(mesh_, meeting)) {
+    return false;
+  }
   if (phase_ != Phase::kStart && !(build_gradient_image().ok() && build_sizing().ok()))
     return false;
   return spec_.sizes || mesh_.uniform();

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "engine/base/constants.h"
+#include "engine/guard/obstacles.h"
 #include "engine/guard/self_meeting.h"
 #include "engine/mesh/face_rings.h"
 #include "engine/mesh/mesh_invariants.h"
@@ -128,7 +129,9 @@ Status conform(Mesh& mesh, double delta, const Schedule& schedule, OperationCoun
     // The search has boxes around vertices of successive ids. Where these lie anywhere, all boxes
     // overlap, and it would take quadratic time.
     mesh.renumber(morton_order(mesh, schedule), schedule);
-    if (!meeting_faces(mesh, schedule).empty()) {
+    Obstacles::Meeting meeting;
+    if (!meeting_faces(mesh, schedule).empty() ||
+        (mesh.obstacles != nullptr && mesh.obstacles->find_meeting(mesh, meeting))) {
       return {ErrorCode::kInvalidData,
               "the surface has faces too thin to be divided in single precision"};
     }

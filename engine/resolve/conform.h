@@ -21,7 +21,8 @@ inline constexpr int kConformPasses = 20;
 //      hundred vertices for every deletion;
 //   3. figure 9 over all vertices until a pass changes nothing.
 //
-// On entry the mesh is closed, oriented and embedded (mesh_import.h, iso_surface.h); delta > 0 in
+// On entry the mesh is closed, oriented and embedded (mesh_import.h, iso_surface.h), and meets none
+// of its obstacles, which it does not on return either; delta > 0 in
 // mesh units. On return it is closed, oriented, embedded - tested exactly, on all faces - and at
 // rest, with ids along a Morton curve, mesh.delta = delta, every vertex due for a check. counts
 // grows by what was done. The same bits for any number of threads.

@@ -11,6 +11,7 @@
 #include "engine/base/parallel_sort.h"
 #include "engine/detect/edge_constraints.h"
 #include "engine/detect/proximity.h"
+#include "engine/guard/obstacles.h"
 #include "kernels/ring_forces.h"
 #include "pyramid/memory.h"
 
@@ -70,7 +71,7 @@ void Resolution::run(uint32_t iteration, const Vector<uint32_t>& moved_since,
   operations_.resize(mesh_.slots());
   pair_queue_ = moved_since;
   changed_.clear();
-  counts.tetrahedron += tiny_.delete_turned_over(mesh_);
+  counts.tetrahedron += tiny_.delete_turned_over(mesh_, holding_obstacles());
   stamp_.resize(mesh_.slots(), 0);
   queue_violated_edges();
   for (int pass = 0; pass < kMaxAxialPasses; ++pass) {
@@ -84,7 +85,14 @@ void Resolution::run(uint32_t iteration, const Vector<uint32_t>& moved_since,
     }
     counts.deferred += static_cast<int64_t>(queue->size());
   }
-  counts.tetrahedron += tiny_.update(mesh_, changed_);
+  counts.tetrahedron += tiny_.update(mesh_, changed_, holding_obstacles());
+}
+
+TinyComponents::Stays Resolution::holding_obstacles() const {
+  if (mesh_.obstacles == nullptr) return nullptr;
+  return [this](const Vector<uint32_t>& component) {
+    return mesh_.obstacles->any_inside(mesh_, component);
+  };
 }
 
 void Resolution::queue_violated_edges() {

@@ -32,6 +32,7 @@ class Resolution {
   void run(uint32_t iteration, const Vector<uint32_t>& moved_since, OperationCounts& counts);
 
  private:
+  TinyComponents::Stays holding_obstacles() const;
   void queue_violated_edges();
   void resolve_edges(OperationCounts& counts);
   bool resolve_pairs(bool first, OperationCounts& counts);

@@ -1,5 +1,6 @@
 // How the resolution applies one operation, and what is checked again after it.
 #include "engine/base/constants.h"
+#include "engine/guard/obstacles.h"
 #include "engine/resolve/resolution.h"
 #include "engine/transform/annular.h"
 #include "engine/transform/axial.h"
@@ -73,6 +74,9 @@ bool Resolution::apply_deletion(const Candidate& candidate, size_t trial, Operat
   const Edge& e = candidate.edge;
   if (mesh_.valence(e.a) == 3 || mesh_.valence(e.b) == 3) {
     // Exactly two common neighbours and an apex of valence 3: the component is a tetrahedron.
+    if (mesh_.obstacles != nullptr && mesh_.obstacles->any_inside(mesh_, {e.u, e.v, e.a, e.b})) {
+      return false;
+    }
     delete_tetrahedron(mesh_, mesh_.valence(e.a) == 3 ? e.a : e.b);
     ++counts.tetrahedron;
     return true;

@@ -8,6 +8,7 @@
 
 #include "engine/base/constants.h"
 #include "engine/base/mesh_arrays.h"
+#include "engine/guard/obstacles.h"
 #include "engine/mesh/face_rings.h"
 #include "engine/mesh/mesh_append.h"
 #include "engine/resolve/conform.h"
@@ -252,13 +253,13 @@ Status make_iso(const ImageObject& object, double delta, const Executor& executo
   return s.code() == ErrorCode::kInvalidData ? Status() : s;
 }
 
-}  // namespace
+bool needs_conforming(Init init) {
+  return init == Init::kIso || init == Init::kMask || init == Init::kMesh;
+}
 
-Status start_surface(const StartSpec& spec, const LevelImage& level, double delta,
-                     const Schedule& schedule, Mesh& mesh, OperationCounts& counts) {
-  mesh.clear();
+Status make_start(const StartSpec& spec, const LevelImage& level, double delta,
+                  const Schedule& schedule, Mesh& mesh) {
   Extent box;
-  Status made;
   switch (spec.init) {
     case Init::kBubble:
       if (!level.iso) box = image_extent(level);
@@ -270,17 +271,43 @@ Status start_surface(const StartSpec& spec, const LevelImage& level, double delt
       return make_seeds(spec, level, delta, schedule, mesh);
     case Init::kIso:
       assert(level.iso);
-      made = make_iso({view_of(level, level.pyramid), *level.iso, level.inside_above}, delta,
+      return make_iso({view_of(level, level.pyramid), *level.iso, level.inside_above}, delta,
                       schedule, mesh);
-      break;
     case Init::kMask:
-      made = make_iso({view_of(level, spec.mask), 0.5F, true}, delta, schedule, mesh);
-      break;
+      return make_iso({view_of(level, spec.mask), 0.5F, true}, delta, schedule, mesh);
     case Init::kMesh:
-      made = make_mesh(spec, level, schedule, mesh);
-      break;
+      return make_mesh(spec, level, schedule, mesh);
   }
+  return {ErrorCode::kInternal, "start: no such kind"};
+}
+
+// The surface is made without them.
+Status check_obstacles(const Mesh& mesh, const LevelImage& level) {
+  Obstacles::Meeting meeting;
+  if (!mesh.obstacles->find_meeting(mesh, meeting)) return {};
+  const Vec3 p = mesh.at(meeting.face[0]);
+  std::array<double, 3> voxel{};
+  for (size_t a = 0; a < 3; ++a) {
+    voxel[a] = static_cast<double>(a == 0 ? p.x : a == 1 ? p.y : p.z) / level.space.step[a];
+  }
+  char line[160];
+  std::snprintf(line, sizeof line,
+                "obstacles: face %u meets the surface to start from, near voxel (%.6g, %.6g, %.6g)",
+                meeting.obstacle, voxel[0], voxel[1], voxel[2]);
+  return {ErrorCode::kInvalidData, line};
+}
+
+}  // namespace
+
+Status start_surface(const StartSpec& spec, const LevelImage& level, double delta,
+                     const Schedule& schedule, Mesh& mesh, OperationCounts& counts) {
+  mesh.clear();
+  Status made = make_start(spec, level, delta, schedule, mesh);
   if (!made.ok() || mesh.vertex_count() == 0) return made;
+  if (mesh.obstacles != nullptr) {
+    if (Status s = check_obstacles(mesh, level); !s.ok()) return s;
+  }
+  if (!needs_conforming(spec.init)) return {};
   Status s = conform(mesh, delta, schedule, counts);
   if (s.code() != ErrorCode::kInvalidData || spec.init == Init::kMesh) return s;
   mesh.clear();  // nothing that this level resolves

@@ -50,7 +50,8 @@ struct LevelImage {
 
 // Clears the mesh and makes it the initial surface for `delta`. It has no vertices where the level
 // shows no object (kBubble, kIso, kMask). Errors: kInvalidArgument (bubbles or seeds too small, too
-// near each other), kInvalidData (a mesh that is not a closed, oriented, embedded surface).
+// near each other), kInvalidData (a mesh that is not a closed, oriented, embedded surface, or a
+// surface that meets an obstacle of the mesh).
 Status start_surface(const StartSpec& spec, const LevelImage& level, double delta,
                      const Schedule& schedule, Mesh& mesh, OperationCounts& counts);
 
