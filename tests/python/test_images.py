@@ -219,6 +219,29 @@ def test_labels_are_disjoint_surfaces_where_the_labels_are(caplog):
     assert [s.hash for s in same.values()] == [s.hash for s in surfaces.values()]
 
 
+def test_labels_have_the_volumes_of_their_voxels():  # but for the edges of a block, which are smoothed
+    z, y, x = np.mgrid[:22, :22, :22] - 10.4
+    values = np.where(x * x + y * y + z * z <= 64, 5, 9)
+    values[[0, -1]] = values[:, [0, -1]] = values[:, :, [0, -1]] = 0
+    for label, surface in pellicle.extract_labels(values).items():
+        assert surface.volume == pytest.approx((values == label).sum(), rel=0.02 if label == 5 else 0.03)
+
+
+def test_a_surface_stops_at_obstacles():
+    z, y, x = np.mgrid[:26, :26, :26] - 12.5
+    ball = np.clip(0.5 + 9 - np.sqrt(x * x + y * y + z * z), 0, 1)
+    wall = np.array([[16.0, -9, -9], [16, 35, -9], [16, 35, 35], [16, -9, 35]])
+    faces = [[0, 1, 2], [0, 2, 3]]
+    start = {"seeds": [[10, 12.5, 12.5, 4]], "levels": 0, "late_bubbles": False}
+    free = pellicle.extract(ball, 0.5, **start)
+    held = pellicle.extract(ball, 0.5, obstacles=(wall, faces), obstacle_gap=0.1, **start)
+    assert free.bounds[1][0] > 21
+    assert 15.5 < held.bounds[1][0] < 16
+    assert held.check().valid
+    with pytest.raises(pellicle.InvalidArgument, match="late_bubbles"):
+        pellicle.extract(ball, 0.5, obstacles=(wall, faces), seeds=start["seeds"])
+
+
 @needs_command
 def test_labels_are_those_of_the_command(tmp_path):
     path = tmp_path / "labels.nrrd"

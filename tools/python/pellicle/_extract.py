@@ -31,6 +31,8 @@ def extract(
     seeds: npt.ArrayLike | None = None,
     mask: npt.ArrayLike | None = None,
     mesh: MeshLike | Literal["uniform", "adaptive"] | None = None,
+    obstacles: MeshLike | None = None,
+    obstacle_gap: float = 0,
     attachments: npt.ArrayLike | None = None,
     pins: npt.ArrayLike | None = None,
     extra_force: ForceFunction | None = None,
@@ -73,6 +75,11 @@ def extract(
     mesh : Surface or (vertices, faces), optional
         Closed, oriented and free of self-intersections, to start from. "uniform" and "adaptive" are
         the parameter of that name: how fine the surface is.
+    obstacles : Surface or (vertices, faces), optional
+        Faces that never move, and that the surface neither meets nor passes over; it starts apart
+        from them, with ``levels=0`` and ``late_bubbles=False``.
+    obstacle_gap : float
+        How near to them it may come, in units of delta, 0 to 1.
     attachments : array_like, optional
         Rows of x, y, z, radius[, strength]: places in the image that draw the surface near them until it goes
         through them. The strength is relative to `attraction`, 1 where it is left out.
@@ -130,6 +137,8 @@ def extract(
         seeds=seeds,
         mask=mask,
         mesh=start,
+        obstacles=obstacles,
+        obstacle_gap=obstacle_gap,
         attachments=attachments,
         pins=pins,
         extra_force=extra_force,

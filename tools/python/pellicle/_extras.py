@@ -35,6 +35,8 @@ class Extras:
     seeds: npt.ArrayLike | None = None
     mask: npt.ArrayLike | None = None
     mesh: MeshLike | None = None
+    obstacles: MeshLike | None = None
+    obstacle_gap: float = 0
     attachments: npt.ArrayLike | None = None
     pins: npt.ArrayLike | None = None
     extra_force: ForceFunction | None = None
@@ -44,18 +46,24 @@ class Extras:
     def core(self) -> _pellicle.Extras:
         """For the engine."""
         progress, level, force = self.callbacks()
-        mesh = self.mesh.in_space(self.space) if isinstance(self.mesh, Surface) else self.mesh
         return _pellicle.Extras(
             space=checked_space(self.space),
             seeds=_rows(self.seeds, "seeds", 4),
             attachments=_attachments(self.attachments),
             pins=_rows(self.pins, "pins", 4),
             mask=None if self.mask is None else voxels_of(self.mask, self.order, "mask"),
-            mesh=None if mesh is None else arrays_of(mesh),
+            mesh=self._arrays(self.mesh, "mesh"),
+            obstacles=self._arrays(self.obstacles, "obstacles"),
+            obstacle_gap=float(self.obstacle_gap),
             progress=progress,
             level=level,
             force=force,
         )
+
+    def _arrays(self, mesh: MeshLike | None, name: str) -> _pellicle.Mesh | None:
+        if mesh is None:
+            return None
+        return arrays_of(mesh.in_space(self.space) if isinstance(mesh, Surface) else mesh, name)
 
     def callbacks(self) -> _pellicle.Callbacks:
         """The user's, for the engine's records."""

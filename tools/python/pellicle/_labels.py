@@ -22,7 +22,10 @@ from ._surface import Surface, checked_space
 
 _INSIDE = 255
 # How a label is drawn, as the command does it: where its indicator is so far within it, in voxels,
-# with so much of the curvature. Those that overlap are drawn again with the next ones.
+# with so much of the curvature. Those that overlap are drawn again with the next ones. From there it
+# grows to the half, this far from its neighbours, in units of delta.
+_GAP = 0.02
+_REACH = 2.0  # voxels, more than it grows by
 _TRIES = [(0.25, 1.0), (0.35, 1.0), (0.45, 1.0), (0.45, 0.5), (0.45, 0.25), (0.45, 0.0)]
 # Parameters that the labels tell, and those that have no sense for them.
 _TAKEN = {
@@ -47,8 +50,8 @@ def extract_labels(
 ) -> dict[int, Surface]:
     """Extracts a surface of each label of a label image; no two of them overlap.
 
-    A label inside another lies in a cavity of that one's surface, and neighbours are about half a
-    voxel apart.
+    A label inside another lies in a cavity of that one's surface, and neighbours are about 0.02 of
+    a voxel apart.
 
     Parameters
     ----------
@@ -90,7 +93,18 @@ def extract_labels(
         raise InvalidData("image: no label is large enough for a surface")
     if left_out:
         _logger.warning("labels too small or too thin to hold a surface, left out: %s", left_out)
-    _separate([piece for piece in pieces if piece.surface is not None], context)
+    drawn = [piece for piece in pieces if piece.surface is not None]
+    _separate(drawn, context)
+    boxes = [piece.box for piece in drawn]
+    # The smallest first, which a neighbour that is smoothed over it would cost the largest part.
+    for i in sorted(range(len(drawn)), key=lambda i: drawn[i].voxels):
+        low, high = boxes[i][0] - _REACH, boxes[i][1] + _REACH
+        near = [
+            other
+            for other, box in zip(drawn, boxes, strict=True)
+            if other is not drawn[i] and (box[0] <= high).all() and (low <= box[1]).all()
+        ]
+        drawn[i].grow(near)
     return {piece.label: piece.surface for piece in pieces if piece.surface is not None}
 
 
@@ -120,6 +134,7 @@ class _Piece:
     """A label and its surface."""
 
     surface: Surface | None = None
+    _cropped: Surface  # the same in the frame of the crop, whose coordinates are not rounded again
     attempt = 0  # of _TRIES
 
     def __init__(
@@ -133,6 +148,7 @@ class _Piece:
         context: Context,
     ) -> None:
         self.label = label
+        self.voxels = int(np.count_nonzero(crop))
         self._crop = crop
         self._low = low
         self._frame = frame
@@ -142,35 +158,61 @@ class _Piece:
 
     def draw(self) -> None:
         """Makes the surface; where there is none with this try, the one of before stays."""
-        margin, share = _TRIES[self.attempt]
-        parameters = self._parameters
-        axes = np.reshape(self._frame.direction, (3, 3))
-        origin = self._frame.origin + axes @ (self._low * self._frame.spacing)
+        margin, _ = _TRIES[self.attempt]
         try:
-            surface = extract(
-                self._crop,
-                (0.5 + margin) * _INSIDE,
-                order="xyz",
-                spacing=self._frame.spacing,
-                origin=origin,
-                direction=axes,
-                parameters=parameters.replace(
-                    window_low=0,
-                    window_high=_INSIDE,
-                    pad_value=0,
-                    levels=0,  # the start is the surface itself, and nothing of it is missed
-                    init="iso",
-                    late_bubbles=False,
-                    curvature=parameters.curvature * share,
-                ),
-                context=self._context,
-            )
+            surface = self._extract((0.5 + margin) * _INSIDE, init="iso")
         except InvalidData as error:
             if not str(error).startswith("no surface"):
                 raise InvalidData(f"label {self.label}: {error}") from error
             return
         if surface.face_count > 0:
-            self.surface = surface._moved(self._low, self._frame).in_space(self._space)
+            self._take(surface)
+
+    def grow(self, others: list[_Piece]) -> None:
+        """On to where the label ends, between the others; or it stays where single precision does
+        not hold it."""
+        vertices, faces = _merged([other._cropped for other in others])
+        try:
+            surface = self._extract(
+                _INSIDE / 2,
+                init="mesh",
+                mesh=self._cropped,
+                obstacles=(vertices, faces) if len(faces) > 0 else None,
+                obstacle_gap=_GAP,
+            )
+        except InvalidData:
+            _logger.warning("label %s: drawn inside of where it is", self.label)
+            return
+        if surface.face_count > 0:
+            self._take(surface)
+
+    def _extract(self, iso: float, *, init: Any, **extras: Any) -> Surface:
+        share = _TRIES[self.attempt][1]
+        axes = np.reshape(self._frame.direction, (3, 3))
+        parameters = self._parameters
+        return extract(
+            self._crop,
+            iso,
+            order="xyz",
+            spacing=self._frame.spacing,
+            origin=self._frame.origin + axes @ (self._low * self._frame.spacing),
+            direction=axes,
+            parameters=parameters.replace(
+                window_low=0,
+                window_high=_INSIDE,
+                pad_value=0,
+                levels=0,  # the start is the surface itself, and nothing of it is missed
+                init=init,
+                late_bubbles=False,
+                curvature=parameters.curvature * share,
+            ),
+            context=self._context,
+            **extras,
+        )
+
+    def _take(self, surface: Surface) -> None:
+        self._cropped = surface
+        self.surface = surface._moved(self._low, self._frame).in_space(self._space)
 
     @property
     def box(self) -> npt.NDArray[np.float64]:
@@ -205,8 +247,16 @@ def _separate(pieces: list[_Piece], context: Context) -> None:
 
 def _valid(pieces: list[_Piece], context: Context) -> bool:
     """Whether the surfaces together are a valid one."""
-    meshes = [arrays_of(piece.mesh) for piece in pieces]
-    starts = np.cumsum([0] + [len(vertices) for vertices, _ in meshes[:-1]])
-    faces = [f.astype(np.int64) + start for (_, f), start in zip(meshes, starts, strict=True)]
-    vertices = np.concatenate([v for v, _ in meshes])
-    return check_mesh((vertices, np.concatenate(faces)), context=context).valid
+    return check_mesh(_merged([piece.mesh for piece in pieces]), context=context).valid
+
+
+def _merged(meshes: list[Surface]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
+    """Their vertices and faces, one after the other."""
+    arrays = [arrays_of(mesh) for mesh in meshes]
+    starts = np.cumsum([0] + [len(vertices) for vertices, _ in arrays])
+    faces = [f.astype(np.int64) + start for (_, f), start in zip(arrays, starts, strict=False)]
+    vertices = [v for v, _ in arrays]
+    return (
+        np.concatenate([np.empty((0, 3)), *vertices]),
+        np.concatenate([np.empty((0, 3), np.int64), *faces]),
+    )

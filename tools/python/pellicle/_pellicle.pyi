@@ -46,6 +46,8 @@ class Extras:
         pins: Rows | None,
         mask: npt.NDArray[Any] | None,
         mesh: Mesh | None,
+        obstacles: Mesh | None,
+        obstacle_gap: float,
         progress: Callable[[Fields], None] | None,
         level: Callable[[Fields, Surface], int] | None,
         force: Callable[[int, Positions, Positions], Positions | None] | None,

@@ -169,7 +169,7 @@ class Run:
         May go afterwards.
     parameters : Parameters, optional
         Instead of those of the pyramid. What the pyramid does not read may differ.
-    space, seeds, mask, mesh, attachments, pins, extra_force, progress, level
+    space, seeds, mask, mesh, obstacles, obstacle_gap, attachments, pins, extra_force, progress, level
         As in `extract`. The mask is indexed as the volume's image.
     context : Context, optional
         That of the pyramid where it is left out. Give each run its own to use several at the same
@@ -188,6 +188,8 @@ class Run:
         seeds: npt.ArrayLike | None = None,
         mask: npt.ArrayLike | None = None,
         mesh: MeshLike | Literal["uniform", "adaptive"] | None = None,
+        obstacles: MeshLike | None = None,
+        obstacle_gap: float = 0,
         attachments: npt.ArrayLike | None = None,
         pins: npt.ArrayLike | None = None,
         extra_force: ForceFunction | None = None,
@@ -208,6 +210,8 @@ class Run:
             seeds=seeds,
             mask=mask,
             mesh=start,
+            obstacles=obstacles,
+            obstacle_gap=obstacle_gap,
             attachments=attachments,
             pins=pins,
             extra_force=extra_force,

@@ -27,7 +27,8 @@ void view_rows(const std::optional<Extras::Rows>& rows, const char* name, const 
 
 Extras make(const std::string& space, std::optional<Extras::Rows> seeds,
             std::optional<Extras::Rows> attachments, std::optional<Extras::Rows> pins,
-            std::optional<py::array> mask, std::optional<MeshArrays> mesh, py::object progress,
+            std::optional<py::array> mask, std::optional<MeshArrays> mesh,
+            std::optional<MeshArrays> obstacles, double obstacle_gap, py::object progress,
             py::object level, py::object force) {
   return {space_of(space),
           std::move(seeds),
@@ -35,6 +36,8 @@ Extras make(const std::string& space, std::optional<Extras::Rows> seeds,
           std::move(pins),
           std::move(mask),
           std::move(mesh),
+          std::move(obstacles),
+          obstacle_gap,
           {std::move(progress), std::move(level), std::move(force)}};
 }
 
@@ -58,6 +61,14 @@ ExtrasView::ExtrasView(const Extras& extras, Callbacks& callbacks) : view_{}, ma
     view_.mesh_abc = mesh.abc;
     view_.mesh_face_count = mesh.face_count;
   }
+  if (extras.obstacles) {
+    const MeshView obstacles(*extras.obstacles);
+    view_.obstacle_xyz = obstacles.xyz;
+    view_.obstacle_vertex_count = obstacles.vertex_count;
+    view_.obstacle_abc = obstacles.abc;
+    view_.obstacle_face_count = obstacles.face_count;
+    view_.obstacle_gap = extras.obstacle_gap;
+  }
   callbacks.install(view_, extras.functions);
 }
 
@@ -65,7 +76,7 @@ void bind_extras(py::module_& module) {
   using namespace py::literals;
   py::class_<Extras>(module, "Extras")
       .def(py::init(&make), py::kw_only(), "space"_a, "seeds"_a, "attachments"_a, "pins"_a,
-           "mask"_a, "mesh"_a, "progress"_a, "level"_a, "force"_a);
+           "mask"_a, "mesh"_a, "obstacles"_a, "obstacle_gap"_a, "progress"_a, "level"_a, "force"_a);
 }
 
 }  // namespace plc::python

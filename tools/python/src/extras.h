@@ -18,7 +18,8 @@ struct Extras {
   plc_space space = PLC_SPACE_LPS;
   std::optional<Rows> seeds, attachments, pins;
   std::optional<py::array> mask;  // indexed [x, y, z]
-  std::optional<MeshArrays> mesh;
+  std::optional<MeshArrays> mesh, obstacles;
+  double obstacle_gap = 0;
   Callbacks::Functions functions;
 };
 
