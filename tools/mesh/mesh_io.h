@@ -4,6 +4,7 @@
 // is 135 libraries of 105 MB; tinygltf, gifticlib and lib3mf know one format each and hold the mesh
 // once more. What the formats are made of - XML, JSON, zlib, zip - libraries do.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,6 +24,13 @@ struct Scalars {
   static constexpr const char* kLabels = "Label";
 };
 
+// What a label is called, and its colour in sRGB.
+struct LabelInfo {
+  int32_t value = 0;
+  std::string name;  // UTF-8 without control characters
+  std::array<uint8_t, 3> rgb{};
+};
+
 // What coordinates mean, as files name it after "SPACE=": 3D Slicer looks for the first two.
 namespace space_names {
 inline constexpr const char* kLps = "LPS";      // mm, x to the left, y to the back, z to the head
@@ -35,6 +43,8 @@ struct TriangleMesh {
   std::vector<uint32_t> abc;   // three per face
   std::vector<float> normals;  // three per vertex, or none
   std::vector<Scalars> scalars{};
+  // Of its first values, where those are labels: ascending; or none. Not read from files.
+  std::vector<LabelInfo> labels{};
   bool doubles = false;  // how the coordinates are written, else as floats
   std::string space{};   // one of space_names; "" where that is not known
 };
@@ -59,8 +69,9 @@ bool holds_scalars(const std::string& path);
 // are read back as they were; an .stl is text then, and .gii and .glb, which have none, are
 // refused. Scalars are float properties of a .ply, point data of .vtp and .vtk, further arrays of a
 // .gii, and attributes of a .glb, which the first of them colours; a mesh that has some is refused
-// in other formats. Written beside the target and renamed: nothing half-written is left behind.
-// Throws Failure.
+// in other formats. Names and colours of labels are comments and colours of a .ply, field data and
+// colours of a .vtp, the table of a .gii, and nodes of a .glb, one for each label. Written beside
+// the target and renamed: nothing half-written is left behind. Throws Failure.
 void write_mesh(const std::string& path, const TriangleMesh& mesh);
 // One of several files, which are there once those are committed.
 void write_mesh(const std::string& path, const TriangleMesh& mesh, AtomicFiles& files);

@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -211,6 +212,36 @@ std::string metadata(const std::string& name, const std::string& value) {
   return "<MD><Name><![CDATA[" + name + "]]></Name><Value><![CDATA[" + value + "]]></Value></MD>\n";
 }
 
+// Names may hold the end of a CDATA section.
+std::string cdata(const std::string& text) {
+  std::string out = "<![CDATA[";
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text.compare(i, 3, "]]>") == 0) {
+      out += "]]]]><![CDATA[>";
+      i += 2;
+    } else {
+      out += text[i];
+    }
+  }
+  return out + "]]>";
+}
+
+std::string label_table(const std::vector<LabelInfo>& labels) {
+  if (labels.empty()) return "<LabelTable/>\n";
+  std::string out = "<LabelTable>\n";
+  for (const LabelInfo& label : labels) {
+    out += "<Label Key=\"" + std::to_string(label.value) + "\"";
+    constexpr std::array<const char*, 3> kParts = {"Red", "Green", "Blue"};
+    for (size_t k = 0; k < 3; ++k) {
+      out += std::string(" ") + kParts[k] + "=\"";
+      put_real(out, label.rgb[k] / 255.0);
+      out += '"';
+    }
+    out += " Alpha=\"1\">" + cdata(label.name) + "</Label>\n";
+  }
+  return out + "</LabelTable>\n";
+}
+
 void write_array(AtomicFile& file, const std::string& intent, const std::string& type, size_t rows,
                  int columns, const std::string& about, const std::string& data) {
   std::string out = "<DataArray Intent=\"" + intent + "\" DataType=\"" + type +
@@ -269,8 +300,8 @@ void write_gifti(AtomicFile& file, const TriangleMesh& mesh) {
       "<!DOCTYPE GIFTI SYSTEM \"http://www.nitrc.org/frs/download.php/115/gifti.dtd\">\n"
       "<GIFTI Version=\"1.0\" NumberOfDataArrays=\"" +
       std::to_string(2 + mesh.scalars.size()) + "\">\n<MetaData>\n" +
-      metadata("SPACE", voxels ? space_names::kVoxel : space_names::kRas) +
-      "</MetaData>\n<LabelTable/>\n");
+      metadata("SPACE", voxels ? space_names::kVoxel : space_names::kRas) + "</MetaData>\n" +
+      label_table(mesh.labels));
   std::string data;
   for (const double x : xyz) put_value(data, static_cast<float>(x));
   const std::string frame = voxels ? "NIFTI_XFORM_UNKNOWN" : "NIFTI_XFORM_SCANNER_ANAT";

@@ -1,10 +1,12 @@
 // GLB, glTF 2.0 in one file: for web pages, Blender, PowerPoint, AR. A description in JSON, then a
 // block of the arrays that it names. Positions stay the floats of the mesh; a node turns and scales
-// them, as glTF has metres, y up and z to the front. The first values, or labels, become colours.
+// them, as glTF has metres, y up and z to the front. The first values, or labels, become colours,
+// and each label of a table becomes a node of that name.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tools/file/failure.h"
@@ -81,25 +83,25 @@ int add_positions(Arrays& arrays, const TriangleMesh& mesh) {
 }
 
 // Without values the material has a colour of its own.
-int add_colours(Arrays& arrays, const Scalars& scalars) {
+int add_colours(Arrays& arrays, const TriangleMesh& mesh) {
   std::vector<uint8_t> bytes;
-  for (const Rgb& rgb : vertex_colours(scalars)) {
+  for (const Rgb& rgb : vertex_colours(mesh)) {
     for (const double x : rgb) bytes.push_back(byte_of(x));
     bytes.push_back(255);
   }
   const int index =
-      arrays.add<uint8_t>("VEC4", kUnsignedByte, kArrayBuffer, scalars.values.size(), bytes);
+      arrays.add<uint8_t>("VEC4", kUnsignedByte, kArrayBuffer, mesh.xyz.size() / 3, bytes);
   arrays.accessor(index)["normalized"] = true;
   return index;
 }
 
-Json primitive_of(Arrays& arrays, const TriangleMesh& mesh) {
+Json attributes_of(Arrays& arrays, const TriangleMesh& mesh) {
   Json attributes = {{"POSITION", add_positions(arrays, mesh)}};
   const size_t vertices = mesh.xyz.size() / 3;
   if (mesh.normals.size() == mesh.xyz.size()) {
     attributes["NORMAL"] = arrays.add<float>("VEC3", kFloat, kArrayBuffer, vertices, mesh.normals);
   }
-  if (!mesh.scalars.empty()) attributes["COLOR_0"] = add_colours(arrays, mesh.scalars[0]);
+  if (!mesh.scalars.empty()) attributes["COLOR_0"] = add_colours(arrays, mesh);
   for (const Scalars& scalars : mesh.scalars) {
     std::string name = "_" + scalars.name;  // as an application's own must begin, in capitals
     std::transform(name.begin(), name.end(), name.begin(),
@@ -111,9 +113,55 @@ Json primitive_of(Arrays& arrays, const TriangleMesh& mesh) {
     for (float& value : values) value = std::isfinite(value) ? value : 0;
     attributes[free] = arrays.add<float>("SCALAR", kFloat, kArrayBuffer, vertices, values);
   }
-  const int corners =
-      arrays.add<uint32_t>("SCALAR", kUnsignedInt, kElementArrayBuffer, mesh.abc.size(), mesh.abc);
-  return {{"attributes", attributes}, {"indices", corners}, {"material", 0}};
+  return attributes;
+}
+
+// The faces of each label, told by their first corner, and what it is called; all faces, without a
+// name, where there is no table.
+struct Part {
+  std::string name;
+  Json extras;
+  std::vector<uint32_t> abc;
+};
+
+std::vector<Part> parts_of(const TriangleMesh& mesh) {
+  if (mesh.labels.empty()) return {{"", {}, mesh.abc}};
+  std::vector<Part> parts;
+  std::map<int32_t, size_t> part_of;
+  for (const LabelInfo& label : mesh.labels) {
+    part_of[label.value] = parts.size();
+    const std::string name = label.name.empty() ? std::to_string(label.value) : label.name;
+    parts.push_back({name, {{"label", label.value}}, {}});
+  }
+  for (size_t i = 0; i < mesh.abc.size(); i += 3) {
+    const auto label = static_cast<int32_t>(mesh.scalars[0].values[mesh.abc[i]]);
+    std::vector<uint32_t>& abc = parts[part_of.at(label)].abc;
+    abc.insert(abc.end(), mesh.abc.begin() + static_cast<ptrdiff_t>(i),
+               mesh.abc.begin() + static_cast<ptrdiff_t>(i) + 3);
+  }
+  std::erase_if(parts, [](const Part& part) { return part.abc.empty(); });
+  return parts;
+}
+
+// A node that turns all to metres, and below it one for each named part. All share the vertices.
+void add_nodes(Arrays& arrays, const TriangleMesh& mesh, Json& root, Json& nodes, Json& meshes) {
+  const Json attributes = attributes_of(arrays, mesh);
+  for (const Part& part : parts_of(mesh)) {
+    const int corners = arrays.add<uint32_t>("SCALAR", kUnsignedInt, kElementArrayBuffer,
+                                             part.abc.size(), part.abc);
+    const Json primitive = {{"attributes", attributes}, {"indices", corners}, {"material", 0}};
+    Json node = {{"mesh", meshes.size()}};
+    Json shape = {{"primitives", {primitive}}};
+    if (mesh.labels.empty()) {
+      root["mesh"] = 0;
+    } else {
+      shape["name"] = node["name"] = part.name;
+      node["extras"] = part.extras;
+      root["children"].push_back(nodes.size() + 1);
+      nodes.push_back(node);
+    }
+    meshes.push_back(shape);
+  }
 }
 
 Json description_of(Arrays& arrays, const TriangleMesh& mesh) {
@@ -125,12 +173,19 @@ Json description_of(Arrays& arrays, const TriangleMesh& mesh) {
   const Json colour = mesh.scalars.empty() ? Json{0.79, 0.75, 0.65, 1.0} : Json{1.0, 1.0, 1.0, 1.0};
   const Json asset = {{"version", "2.0"}, {"generator", "Pellicle"}};
   if (mesh.abc.empty()) return {{"asset", asset}};  // an array of nothing is none
-  const Json primitive = primitive_of(arrays, mesh);
+  Json root = Json::object();
+  Json below = Json::array();
+  Json meshes = Json::array();
+  add_nodes(arrays, mesh, root, below, meshes);
+  root["matrix"] = matrix_of(mesh.space);
+  root["extras"] = extras;
+  Json nodes = Json::array({root});
+  nodes.insert(nodes.end(), below.begin(), below.end());
   return {{"asset", asset},
           {"scene", 0},
           {"scenes", {{{"nodes", {0}}}}},
-          {"nodes", {{{"mesh", 0}, {"matrix", matrix_of(mesh.space)}, {"extras", extras}}}},
-          {"meshes", {{{"primitives", {primitive}}}}},
+          {"nodes", nodes},
+          {"meshes", meshes},
           {"materials",
            {{{"pbrMetallicRoughness",
               {{"baseColorFactor", colour}, {"metallicFactor", 0}, {"roughnessFactor", 0.7}}}}}},

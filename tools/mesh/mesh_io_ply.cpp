@@ -8,6 +8,7 @@
 #include "tools/file/printable.h"
 #include "tools/file/text.h"
 #include "tools/mesh/mesh_io_formats.h"
+#include "tools/mesh/vertex_colours.h"
 
 namespace plc::tools {
 namespace {
@@ -297,6 +298,11 @@ void write_ply(AtomicFile& file, const TriangleMesh& mesh) {
   const bool with_normals = mesh.normals.size() == mesh.xyz.size();
   std::string out = "ply\nformat binary_little_endian 1.0\ncomment Pellicle\n";
   if (!mesh.space.empty()) out += "comment " + space_comment(mesh) + "\n";
+  for (const LabelInfo& label : mesh.labels) {
+    out += "comment label " + std::to_string(label.value);
+    for (const uint8_t part : label.rgb) out += " " + std::to_string(part);
+    out += " " + label.name + "\n";
+  }
   out += "element vertex ";
   put_integer(out, mesh.xyz.size() / 3);
   out += '\n';
@@ -306,6 +312,11 @@ void write_ply(AtomicFile& file, const TriangleMesh& mesh) {
   }
   if (with_normals) out += "property float nx\nproperty float ny\nproperty float nz\n";
   for (const Scalars& scalars : mesh.scalars) out += "property float " + scalars.name + "\n";
+  const std::vector<uint8_t> colours =
+      mesh.labels.empty() ? std::vector<uint8_t>() : vertex_bytes(mesh);
+  if (!colours.empty()) {
+    out += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  }
   out += "element face ";
   put_integer(out, mesh.abc.size() / 3);
   out += "\nproperty list uchar uint vertex_indices\nend_header\n";
@@ -313,6 +324,7 @@ void write_ply(AtomicFile& file, const TriangleMesh& mesh) {
     for (size_t k = 0; k < 3; ++k) put_coordinate(out, mesh.xyz[i + k], mesh.doubles);
     for (size_t k = 0; with_normals && k < 3; ++k) put_value(out, mesh.normals[i + k]);
     for (const Scalars& scalars : mesh.scalars) put_value(out, scalars.values[i / 3]);
+    for (size_t k = 0; !colours.empty() && k < 3; ++k) put_value(out, colours[i + k]);
     drain(file, out);
   }
   for (size_t i = 0; i < mesh.abc.size(); ++i) {

@@ -8,6 +8,7 @@
 #include "tools/file/xml_reader.h"
 #include "tools/mesh/mesh_io_formats.h"
 #include "tools/mesh/mesh_io_vtp_array.h"
+#include "tools/mesh/vertex_colours.h"
 
 namespace plc::tools {
 namespace {
@@ -210,13 +211,34 @@ std::string array_tag(const char* type, const std::string& name, int components,
 }
 
 // The field by which 3D Slicer knows it.
-std::string space_field(const std::string& space) {
-  if (space.empty()) return "";
-  std::string text =
-      "<FieldData>\n<DataArray type=\"String\" Name=\"SPACE\" NumberOfTuples=\"1\" "
-      "format=\"ascii\">";
-  for (const char c : space) text += std::to_string(int{c}) + " ";
-  return text + "0</DataArray>\n</FieldData>\n";
+// VTK writes text as the numbers of its bytes, with a zero behind each string.
+std::string text_array(const char* name, const std::vector<std::string>& strings) {
+  std::string text = std::string("<DataArray type=\"String\" Name=\"") + name +
+                     "\" NumberOfTuples=\"" + std::to_string(strings.size()) +
+                     "\" format=\"ascii\">";
+  for (const std::string& string : strings) {
+    for (const char c : string) text += std::to_string(static_cast<unsigned char>(c)) + " ";
+    text += "0 ";
+  }
+  text.back() = '<';
+  return text + "/DataArray>\n";
+}
+
+// What the mesh as a whole has: its space, and the names of labels beside their values.
+std::string field_data(const TriangleMesh& mesh) {
+  std::string text;
+  if (!mesh.space.empty()) text += text_array("SPACE", {mesh.space});
+  if (!mesh.labels.empty()) {
+    std::vector<std::string> names;
+    text += "<DataArray type=\"Int32\" Name=\"LabelValues\" NumberOfTuples=\"" +
+            std::to_string(mesh.labels.size()) + "\" format=\"ascii\">";
+    for (const LabelInfo& label : mesh.labels) {
+      text += std::to_string(label.value) + " ";
+      names.push_back(label.name);
+    }
+    text += "</DataArray>\n" + text_array("LabelNames", names);
+  }
+  return text.empty() ? "" : "<FieldData>\n" + text + "</FieldData>\n";
 }
 
 template <typename To, typename Values>
@@ -244,11 +266,14 @@ void write_vtp(AtomicFile& file, const TriangleMesh& mesh) {
   const size_t normals_bytes = sizeof(uint64_t) + mesh.xyz.size() * sizeof(float);
   const size_t scalars_at = points_bytes + (with_normals ? normals_bytes : 0);
   const size_t scalar_bytes = sizeof(uint64_t) + mesh.xyz.size() / 3 * sizeof(float);
-  const size_t cells_at = scalars_at + scalar_bytes * mesh.scalars.size();
+  const size_t colours_at = scalars_at + scalar_bytes * mesh.scalars.size();
+  const std::vector<uint8_t> colours =
+      mesh.labels.empty() ? std::vector<uint8_t>() : vertex_bytes(mesh);
+  const size_t cells_at = colours_at + (colours.empty() ? 0 : sizeof(uint64_t) + colours.size());
   std::string out =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
       "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n";
-  out += space_field(mesh.space) + "<Piece NumberOfPoints=\"";
+  out += field_data(mesh) + "<Piece NumberOfPoints=\"";
   put_integer(out, mesh.xyz.size() / 3);
   out += "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"";
   put_integer(out, faces);
@@ -259,6 +284,7 @@ void write_vtp(AtomicFile& file, const TriangleMesh& mesh) {
     for (size_t i = 0; i < mesh.scalars.size(); ++i) {
       out += array_tag("Float32", mesh.scalars[i].name, 1, scalars_at + i * scalar_bytes);
     }
+    if (!colours.empty()) out += array_tag("UInt8", "Colours", 3, colours_at);
     out += "</PointData>\n";
   }
   out += "<Points>\n" + array_tag(mesh.doubles ? "Float64" : "Float32", "Points", 3, 0) +
@@ -275,6 +301,7 @@ void write_vtp(AtomicFile& file, const TriangleMesh& mesh) {
   }
   if (with_normals) write_array<float>(file, mesh.normals);
   for (const Scalars& scalars : mesh.scalars) write_array<float>(file, scalars.values);
+  if (!colours.empty()) write_array<uint8_t>(file, colours);
   write_array<int64_t>(file, mesh.abc);
   std::vector<int64_t> offsets(faces);
   for (size_t i = 0; i < faces; ++i) offsets[i] = static_cast<int64_t>(3 * (i + 1));

@@ -25,6 +25,26 @@ double linear(double part) {  // of sRGB
   return part <= 0.04045 ? part / 12.92 : std::pow((part + 0.055) / 1.055, 2.4);
 }
 
+double srgb_of(double part) {
+  return part <= 0.0031308 ? part * 12.92 : 1.055 * std::pow(part, 1 / 2.4) - 0.055;
+}
+
+std::array<uint8_t, 3> bytes_of(const Rgb& rgb) {
+  std::array<uint8_t, 3> bytes{};
+  for (size_t k = 0; k < 3; ++k) {
+    bytes[k] = static_cast<uint8_t>(std::lround(255 * std::clamp(srgb_of(rgb[k]), 0.0, 1.0)));
+  }
+  return bytes;
+}
+
+Rgb colour_in(const std::vector<LabelInfo>& table, int32_t label) {
+  const auto at =
+      std::lower_bound(table.begin(), table.end(), label,
+                       [](const LabelInfo& l, int32_t value) { return l.value < value; });
+  if (at == table.end() || at->value != label) return label_colour(label);
+  return colour_of_bytes(at->rgb);
+}
+
 }  // namespace
 
 // As the page has them (tools/view/page/colours.js).
@@ -37,6 +57,16 @@ Rgb label_colour(int32_t label) {
     const double turn = std::fmod((k == 0 ? 0.0 : k == 1 ? 8.0 : 4.0) + hue / 30, 12);
     rgb[k] = linear(0.62 - 0.32 * std::clamp(std::min(turn - 3, 9 - turn), -1.0, 1.0));
   }
+  return rgb;
+}
+
+std::array<uint8_t, 3> label_bytes(int32_t label) {
+  return bytes_of(label_colour(label));
+}
+
+Rgb colour_of_bytes(const std::array<uint8_t, 3>& srgb) {
+  Rgb rgb{};
+  for (size_t k = 0; k < 3; ++k) rgb[k] = linear(srgb[k] / 255.0);
   return rgb;
 }
 
@@ -61,7 +91,8 @@ ColourRange colour_range(const Scalars& scalars) {
   return {sorted[last / 50], sorted[last - last / 50]};
 }
 
-std::vector<Rgb> vertex_colours(const Scalars& scalars) {
+std::vector<Rgb> vertex_colours(const TriangleMesh& mesh) {
+  const Scalars& scalars = mesh.scalars[0];
   std::vector<Rgb> colours;
   colours.reserve(scalars.values.size());
   const ColourRange range = colour_range(scalars);
@@ -69,12 +100,22 @@ std::vector<Rgb> vertex_colours(const Scalars& scalars) {
   const bool labels = scalars.are_labels();
   for (const float value : scalars.values) {
     if (labels) {
-      colours.push_back(label_colour(std::isfinite(value) ? static_cast<int32_t>(value) : 0));
+      const int32_t label = std::isfinite(value) ? static_cast<int32_t>(value) : 0;
+      colours.push_back(colour_in(mesh.labels, label));
     } else {
       colours.push_back(value_colour((static_cast<double>(value) - range.low) / width));
     }
   }
   return colours;
+}
+
+std::vector<uint8_t> vertex_bytes(const TriangleMesh& mesh) {
+  std::vector<uint8_t> bytes;
+  for (const Rgb& rgb : vertex_colours(mesh)) {
+    const std::array<uint8_t, 3> three = bytes_of(rgb);
+    bytes.insert(bytes.end(), three.begin(), three.end());
+  }
+  return bytes;
 }
 
 }  // namespace plc::tools
