@@ -70,6 +70,10 @@ module=$libdir/pellicle/cli-modules/PellicleExtract
 "$prefix/bin/pellicle" extract --xml | cmp -s - "$here/module.xml" ||
   fails "Slicer's module does not run the command: $(head -3 "$here/module.xml")"
 
+"${module%Extract}Labels" --xml >"$here/module.xml" 2>&1
+"$prefix/bin/pellicle" extract --xml-labels | cmp -s - "$here/module.xml" ||
+  fails "Slicer's module of labels does not run the command: $(head -3 "$here/module.xml")"
+
 # ---- exports: just what the header declares, with a version
 declarations=$(grep -c '^PLC_API' "$header")
 sed -nE 's/^PLC_API .*[ *](plc_[a-z0-9_]+)\(.*/\1/p' "$header" | sort >"$here/declared"

@@ -15,9 +15,10 @@ PELLICLE, FOLDER = sys.argv[1], sys.argv[2]
 EXTRACT = [PELLICLE, "extract"]
 ISO = {"iso": "0.5"}
 
-ATTRIBUTES = {"image": {"type"}, "geometry": {"type", "fileExtensions"}, "boolean": {"hidden"}}
+ATTRIBUTES = {"image": {"type"}, "geometry": {"type", "fileExtensions"}, "boolean": {"hidden"},
+              "file": {"fileExtensions"}}
 NUMBERS = {"integer", "double"}
-TAGS = NUMBERS | {"image", "geometry", "boolean", "string", "string-enumeration"}
+TAGS = NUMBERS | {"image", "geometry", "file", "boolean", "string", "string-enumeration"}
 CHILDREN = {"name", "longflag", "label", "description", "default", "index", "channel", "element",
             "constraints"}
 VARIABLE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
@@ -37,8 +38,8 @@ def text(parameter, name):
     return parameter.findtext(name, "").strip()
 
 
-def read_description():
-    done = subprocess.run(EXTRACT + ["--xml"], capture_output=True, text=True)
+def read_description(option):
+    done = subprocess.run(EXTRACT + [option], capture_output=True, text=True)
     expect(done.returncode == 0 and done.stderr == "", "--xml: fails, or writes to stderr")
     expect(done.stdout.startswith("<?xml"), "--xml: something stands before the XML")
     root = ElementTree.fromstring(done.stdout)
@@ -85,7 +86,8 @@ def check_parameters(parameters):
         if parameter.tag == "string-enumeration":
             elements = [e.text for e in parameter.findall("element")]
             expect(text(parameter, "default") in elements, f"{name}: default not one of {elements}")
-    channels = {text(p, "channel"): p.tag for p in parameters if p.find("channel") is not None}
+    channels = {text(p, "channel"): p.tag for p in parameters
+                if p.find("channel") is not None and p.tag != "file"}
     expect(channels == {"input": "image", "output": "geometry"}, f"channels {channels}")
     expect("space" not in names, "Slicer takes a mesh without a space for LPS: no other may be chosen")
 
@@ -97,8 +99,12 @@ def command_line(parameters, image, mesh, values):
         name = text(parameter, "name")
         value = values.get(name, text(parameter, "default"))
         flag = "--" + text(parameter, "longflag")
-        if parameter.tag == "image":
+        if parameter.tag == "image" and parameter.find("index") is not None:
             last.append(image)
+        elif parameter.tag == "image":
+            line += [flag, image]
+        elif parameter.tag == "file":
+            line += [flag, value] if value else []
         elif parameter.tag == "geometry":
             line += [flag, mesh]
         elif parameter.tag == "boolean":
@@ -177,11 +183,28 @@ def check_cancel(parameters):
         expect(os.listdir(folder) == [], f"{how.name}: leaves {os.listdir(folder)}")
 
 
-described = read_description()
+def check_labels(parameters):
+    """The module of label images: one mesh of all, with names where the user has a table."""
+    image, mesh, names = (f"{FOLDER}/{name}" for name in ("cells.nrrd", "cells.vtp", "cells.ctbl"))
+    run(PELLICLE, "phantom", "labels", "--size", "30", "--count", "2", "-o", image)
+    with open(names, "w") as table:
+        table.write("1 cortex 10 20 30 255\n")
+    done = run(*command_line(parameters, image, mesh, {"names": names}))
+    expect(done.returncode == 0 and done.stderr == "", f"labels: {done.returncode}, {done.stderr}")
+    expect(done.stdout.rstrip().endswith("</filter-end>"), "labels: no progress")
+    expect(run(PELLICLE, "check", mesh).returncode == 0, "labels: the mesh is not valid")
+    with open(mesh, "rb") as written:
+        expect(b"LabelNames" in written.read(), "labels: the mesh has no names")
+
+
+described = read_description("--xml")
 check_parameters(described)
 check_run(described)
 check_values(described)
 check_cancel(described)
+labels = read_description("--xml-labels")
+check_parameters(labels)
+check_labels(labels)
 if failures:
     sys.exit(f"{failures} failures")
 print("All as expected.")

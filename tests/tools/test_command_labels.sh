@@ -54,6 +54,38 @@ done
 at_most_apart 1.5 out/cell-4.off "${shell:-}"  # all of the inner label's surface is its neighbour's
 find out -mindepth 1 -delete
 
+# ---- one file of all with names and colours, and a table; volumes are those of the voxels
+"$pellicle" phantom labels --size 40 --count 2 -o named.nrrd >stdout 2>stderr
+printf '1 10 20 30 1 1 1 "first cell"\n2 0 0 255 1 1 1 "second"\n' >named.label
+works "merged" 0 "$pellicle" extract --labels named.nrrd -o out/n.off --merged out/all.ply --table out/n.tsv
+says "merged" '^label 1 \(first cell\) +[0-9]+ voxels: .* \(9[6-9]\.[0-9] %\): out/n-1.off$' stdout
+says "merged" '^labels   3 written, 0 left out, .* neighbours 0.017 mm apart$' stdout
+[ "$(LC_ALL=C grep -a '^comment label' out/all.ply | head -2 | paste -sd+)" = \
+  "comment label 1 10 20 30 first cell+comment label 2 0 0 255 second" ] || fails "merged: no names in the .ply"
+merged=$(components out/all.ply)
+union out/n-*.off >all.off
+[ "$(components all.off)" = "$merged" ] || fails "merged: $merged components"
+awk -F'\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+  { ++rows; if ($at["of_voxels"] < 0.9 || $at["of_voxels"] > 1.02 || system("test -s " $at["file"]) != 0) exit 1 }
+  $1 == 1 && ($2 != "first cell" || $3 != 10 || $5 != 30) { exit 1 }
+  END { if (rows != 3) exit 1 }' out/n.tsv || fails "table: $(cat out/n.tsv)"
+printf '1 other\n' >other.txt
+works "merged alone" 0 "$pellicle" extract --labels named.nrrd --names other.txt --merged out/alone.vtp --quiet
+components out/alone.vtp >/dev/null
+find out -mindepth 1 -delete
+refused "merged to .stl" "out/m.stl: --merged needs" "$pellicle" extract --labels named.nrrd --merged out/m.stl
+echo nonsense >bad.txt
+refused "bad names" "bad.txt: line 1" "$pellicle" extract --labels named.nrrd --names bad.txt -o out/x.ply
+# A ball of radius 8, and one in a block of another label.
+awk 'BEGIN { printf "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 44 22 22\nencoding: ascii\n\n"
+  for (i = 0; i < 44 * 22 * 22; ++i) { x = i % 44; y = int(i / 44) % 22; z = int(i / 968)
+    r = (y - 10.3) ^ 2 + (z - 10.6) ^ 2
+    print ((x - 10.4) ^ 2 + r <= 64 ? 3 : (x - 32.2) ^ 2 + r <= 64 ? 2 : x > 21 && x < 43 && y * z > 0 && y < 21 && z < 21 ? 1 : 0) } }' >balls.nrrd
+works "balls" 0 "$pellicle" extract --labels balls.nrrd --merged out/balls.vtp --table out/balls.tsv --quiet
+awk -F'\t' 'NR > 1 { ++rows; if ($14 < 0.98 || $14 > 1.02) exit 1 } END { if (rows != 3) exit 1 }' out/balls.tsv ||
+  fails "volumes are more than 2 % off: $(cat out/balls.tsv)"
+find out -mindepth 1 -delete
+
 # ---- the frame: voxel indices and mm of the whole image, whatever the crop
 zeros() { head -c "$1" /dev/zero; }
 {
@@ -141,6 +173,8 @@ labels "label of one half" "half.nrrd.*integer" half.nrrd
 labels "label that is NaN" "nan.nrrd.*integer" nan.nrrd
 labels "missing labels" "missing.nrrd" missing.nrrd
 labels "report in no folder" "missing/report" cells.nrrd --report missing/report.json
+labels "table in no folder" "missing/t.tsv" cells.nrrd --table missing/t.tsv
+labels "missing names" "missing.txt: there is no such file" cells.nrrd --names missing.txt
 labels "report that is the mesh" "twice" cells.nrrd --report out/mesh.ply
 labels "bad curvature" "curvature" cells.nrrd --curvature -1
 labels "an image too" "labels" cells.nrrd cells.nrrd

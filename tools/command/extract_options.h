@@ -23,8 +23,9 @@ struct Structure {
 };
 
 struct ExtractOptions {
-  std::string input;   // "": labels are extracted
-  std::string labels;  // "": none; else there is no input
+  std::string input;                 // "": labels are extracted
+  std::string labels;                // "": none; else there is no input
+  std::string names, merged, table;  // of labels; "": none
   std::string output;
   std::string report;     // "": none
   std::string trace;      // "": none

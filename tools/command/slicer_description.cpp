@@ -15,9 +15,15 @@ namespace {
 // Slicer makes nodes of its scene from one output, in LPS, and tells its user the rest itself. It
 // hands images on as NRRD. It passes on every choice and number, so that nothing would be left of
 // what --quality sets.
-const std::set<std::string> kLeftOut = {"--help",      "--xml",    "--space",       "--report",
-                                        "--trace",     "--quiet",  "--each-level",  "--attach",
-                                        "--structure", "--labels", "--nifti-frame", "--quality"};
+const std::set<std::string> kLeftOut = {"--help",    "--xml",       "--xml-labels", "--space",
+                                        "--report",  "--trace",     "--quiet",      "--each-level",
+                                        "--attach",  "--structure", "--labels",     "--nifti-frame",
+                                        "--quality", "--names",     "--merged",     "--table"};
+// What the module of label images has: a surface of each, all in one mesh. Slicer passes on all
+// that it shows, and labels exclude the rest.
+const std::set<std::string> kOfLabels = {
+    "--slicer-progress", "--labels",    "--names",  "--merged",  "--mesh", "--tolerance",
+    "--edge-range",      "--curvature", "--spring", "--threads", "--simd"};
 // Where what is shown first lies.
 const std::set<std::string> kBasic = {"Files", "Object"};
 
@@ -177,28 +183,56 @@ std::string files_of(const CLI::App& extract) {
          element("channel", "output") + "</geometry>\n";
 }
 
-std::string description_of(const CLI::App& extract) {
+// The label image, the table of names, and all surfaces in one mesh, whose values are the labels.
+std::string files_of_labels(const CLI::App& extract) {
+  const auto about_of = [&](const char* name) {
+    const CLI::Option& option = *extract.get_option(name);
+    const std::string& meaning = option.get_description();
+    return about(option, meaning.substr(0, meaning.find(". ")));
+  };
+  return "    <image type=\"label\">" + about_of("--labels") + element("channel", "input") +
+         "</image>\n    <file fileExtensions=\".txt,.ctbl,.label,.lut\">" + about_of("--names") +
+         element("channel", "input") + "</file>\n    <geometry type=\"model\" " +
+         "fileExtensions=\".vtp\">" + about_of("--merged") + element("channel", "output") +
+         "</geometry>\n";
+}
+
+struct Module {
+  const char* title;
+  const char* description;  // null: that of the command
+  bool (*has)(const std::string& option);
+  std::string (*files)(const CLI::App& extract);
+};
+constexpr Module kExtract = {"Pellicle Extract", nullptr,
+                             [](const std::string& option) { return kLeftOut.count(option) == 0; },
+                             files_of};
+constexpr Module kLabels = {
+    "Pellicle Labels", "Extract a closed surface around every label of a label image",
+    [](const std::string& option) { return kOfLabels.count(option) > 0; }, files_of_labels};
+// Files have elements of their own.
+const std::set<std::string> kFiles = {"--output", "--labels", "--names", "--merged"};
+
+std::string description_of(const CLI::App& extract, const Module& module) {
   std::vector<std::string> groups;
   for (const CLI::Option* option : extract.get_options()) {
     const std::string& group = option->get_group();
-    if (option->get_lnames().empty() || kLeftOut.count("--" + option->get_lnames()[0]) > 0)
-      continue;
+    if (option->get_lnames().empty() || !module.has("--" + option->get_lnames()[0])) continue;
     if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
   }
-  std::string xml = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<executable>\n  " +
-                    element("category", "Surface Models") + "\n  " +
-                    element("title", "Pellicle Extract") + "\n  " +
-                    element("description", extract.get_description()) + "\n  " +
-                    element("version", plc_version_string()) + "\n";
+  std::string xml =
+      "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<executable>\n  " +
+      element("category", "Surface Models") + "\n  " + element("title", module.title) + "\n  " +
+      element("description", module.description == nullptr ? extract.get_description()
+                                                           : std::string(module.description)) +
+      "\n  " + element("version", plc_version_string()) + "\n";
   for (const std::string& group : groups) {
     xml += kBasic.count(group) > 0 ? "  <parameters>\n" : "  <parameters advanced=\"true\">\n";
     xml += "    " + element("label", group) + element("description", group) + "\n";
-    if (group == "Files") xml += files_of(extract);
+    if (group == "Files") xml += module.files(extract);
     for (const CLI::Option* option : extract.get_options()) {
       if (option->get_lnames().empty() || option->get_group() != group) continue;
       const std::string name = "--" + option->get_lnames()[0];
-      if (kLeftOut.count(name) == 0 && name != "--output")
-        xml += "    " + parameter(*option) + "\n";
+      if (module.has(name) && kFiles.count(name) == 0) xml += "    " + parameter(*option) + "\n";
     }
     xml += "  </parameters>\n";
   }
@@ -208,11 +242,16 @@ std::string description_of(const CLI::App& extract) {
 }  // namespace
 
 void add_slicer_option(CLI::App& extract) {
-  extract
-      .add_flag_callback(
-          "--xml", [&extract] { throw CLI::CallForVersion(description_of(extract), 0); },
-          "Print the description by which 3D Slicer makes a module of this command")
-      ->group("Files");
+  const auto add = [&extract](const char* name, const Module& module, const char* of) {
+    extract
+        .add_flag_callback(
+            name, [&] { throw CLI::CallForVersion(description_of(extract, module), 0); },
+            std::string("Print the description by which 3D Slicer makes a module of this command") +
+                of)
+        ->group("Files");
+  };
+  add("--xml", kExtract, "");
+  add("--xml-labels", kLabels, ", with --labels");
 }
 
 void accept_slicer_names(std::vector<std::string>& arguments) {

@@ -7,8 +7,9 @@
 
 namespace plc::tools {
 
-// Declares --xml on `extract`, after all other options, from which the description is made: parsing
-// it throws CLI::CallForVersion with the description as its text.
+// Declares --xml and --xml-labels on `extract`, after all other options, from which the
+// descriptions of a module for images and of one for label images are made: parsing it throws
+// CLI::CallForVersion with the description as its text.
 void add_slicer_option(CLI::App& extract);
 
 // Slicer takes only names of letters, digits and underscores: --level_iso becomes --level-iso.
