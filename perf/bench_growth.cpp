@@ -98,7 +98,7 @@ void write_mesh(const plc::Mesh& mesh, std::FILE* file) {
 void read_mesh(std::FILE* file, plc::Mesh& mesh) {
   uint32_t count = 0;
   get(file, &count, 1);
-  mesh.reserve(count);
+  mesh.reserve(count + count / 32);  // what a renumbered mesh has
   for (uint32_t i = 0; i < count; ++i) {
     Vertex vertex;
     get(file, &vertex, 1);
