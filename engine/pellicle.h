@@ -261,14 +261,15 @@ typedef enum plc_mesh_kind PLC_INT {
 
 #define PLC_MAX_LEVELS 32
 
-/* How long the edges of the result are. A uniform mesh is as fine as the image: no parameter sets
- * its edges. With v the shortest side of a voxel, delta is v / 1.2, and every edge is between delta
+/* How long the edges of the result are. A uniform mesh is as fine as the image unless edge tells
+ * otherwise. With v the shortest side of a voxel, delta is v / 1.2, and every edge is between delta
  * and 2.5 delta long, 0.83 v .. 2.08 v: 1.1 v to 1.5 v in the mean, 0.5 to 0.9 vertices to each
  * v * v of the surface. Where voxels are no cubes, PLC_ANISOTROPY_VOXEL and _METRIC count lengths
  * in voxels on each axis: in mm edges are longer along the longer sides. With
  * PLC_ANISOTROPY_PHYSICAL they are as long in mm in all directions; v there is doubled until a
- * voxel is at most 8 cubes of it. For longer or shorter edges everywhere give an image of larger or
- * smaller voxels.
+ * voxel is at most 8 cubes of it. With edge, all lengths are edge / 1.25 v times these, and so is
+ * what the surface resolves: longer edges round off and lose what is small, shorter ones follow the
+ * interpolated image more closely.
  *
  * Those of an adaptive mesh are by place: where the image's iso-surface bends as a ball of radius R
  * they are about 3 sqrt(tolerance R) in the mean, but within edge_min .. edge_max.
@@ -296,6 +297,8 @@ typedef struct plc_parameters {
   /* the mesh, see above; lengths in mm where voxels have their shortest side, on I_0. 0: derived
      from the voxels; the result's parameters tell */
   plc_mesh_kind mesh;
+  double edge; /* of a uniform mesh: about the mean of its edges, from a quarter of a voxel to a tenth
+                  of the image's shortest side; 0: 1.25 voxels */
   double tolerance; /* of an adaptive mesh: the mean distance of its facets from a surface that
                        bends as the image's does, > 0; 0: 1/24 of a voxel */
   double edge_min, edge_max; /* of an adaptive mesh: mean edges lie between, an eighth of those of a

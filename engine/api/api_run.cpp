@@ -66,7 +66,12 @@ Status Run::prepare(std::shared_ptr<const PyramidData> pyramid, Pyramid images, 
     surface_->level_units.push_back(images.levels[h].unit);
   }
   const double unit = images.levels[0].unit;
-  if (Status s = derive_mesh(unit, p); !s.ok()) return s;
+  const VolumeView& volume = pyramid_->volume->view;
+  double side = volume.spacing[0] * static_cast<double>(volume.dims[0]);
+  for (size_t a = 1; a < 3; ++a) {
+    side = std::min(side, volume.spacing[a] * static_cast<double>(volume.dims[a]));
+  }
+  if (Status s = derive_mesh(unit, side, p); !s.ok()) return s;
   RecoverySpec spec = recovery_spec(p, unit);
   spec.isos = pyramid_->isos;
   take_extras(extras, surface_->frame, spec);
@@ -98,8 +103,8 @@ Status Run::prepare(std::shared_ptr<const PyramidData> pyramid, Pyramid images, 
 Status Run::check_cost(const Pyramid& images, const RecoverySpec& spec) const {
   constexpr double kSure = 4;
   constexpr double kFew = 1000;
-  const Cost cost = expected_cost(images, spec.isos, spec.inside_above, spec.pad_voxels,
-                                  spec.anisotropy, host_->schedule);
+  const Cost cost = expected_cost(images, spec.isos, spec.inside_above, spec.pad_voxels, spec.scale,
+                                  host_->schedule);
   const std::string what = "about " + number_text(cost.vertices, 3) + " vertices and " +
                            number_text(cost.bytes / (1 << 20), 3) + " MiB";
   if (cost.bytes / kSure > static_cast<double>(host_->memory.left()) ||

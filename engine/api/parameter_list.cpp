@@ -92,6 +92,7 @@ constexpr plc_parameter_info kList[] = {
     choice(FIELD(init), PLC_INIT_BUBBLE, PLC_INIT_BUBBLE, "a plc_init", kInits),
     count({"bubbles", offsetof(plc_parameters, bubbles), 3}, 1, 1, 256, "1 .. 256 per axis"),
     choice(FIELD(mesh), PLC_MESH_UNIFORM, PLC_MESH_UNIFORM, "a plc_mesh_kind", kMeshes),
+    real(FIELD(edge), 0, 0, kMost, "0 .. 1e6 mm"),
     real(FIELD(tolerance), 0, 0, kMost, "0 .. 1e6 mm"),
     real(FIELD(edge_min), 0, 0, kMost, "0 .. 1e6 mm"),
     real(FIELD(edge_max), 0, 0, kMost, "0 .. 1e6 mm"),

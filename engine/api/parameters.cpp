@@ -61,6 +61,13 @@ Status check_surroundings(const plc_parameters& p) {
 
 // Of an adaptive mesh.
 constexpr double kLeastSize = 0.125, kMostSize = 7.9;  // in delta
+// Of the edges of a uniform mesh, in voxels and in the image's shortest side.
+constexpr double kLeastEdge = 0.25, kMostEdge = 0.1;
+
+// Mean edges of a uniform mesh whose delta is that of the voxels, mm.
+double usual_edge(double unit) {
+  return kMeanEdge * unit / kUnitPerDelta;
+}
 
 Status check_mesh(const plc_parameters& p) {
   if (p.mesh != PLC_MESH_ADAPTIVE) return {};
@@ -138,8 +145,17 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
   return {};
 }
 
-Status derive_mesh(double unit, plc_parameters& p) {
-  if (p.mesh != PLC_MESH_ADAPTIVE) return {};
+Status derive_edge(double unit, double side, plc_parameters& p) {
+  if (p.edge == 0) p.edge = usual_edge(unit);
+  const double least = kLeastEdge * unit, most = std::max(kMostEdge * side, usual_edge(unit));
+  if (p.edge >= least && p.edge <= most) return {};
+  return {ErrorCode::kInvalidArgument, "edges of " + text(p.edge) + " mm: must be within " +
+                                           text(least) + " .. " + text(most) +
+                                           " mm for this image"};
+}
+
+Status derive_mesh(double unit, double side, plc_parameters& p) {
+  if (p.mesh != PLC_MESH_ADAPTIVE) return derive_edge(unit, side, p);
   const double delta = unit / kUnitPerDelta;
   const SizeSpec sizes;
   if (p.tolerance == 0) p.tolerance = sizes.tolerance * delta;
@@ -171,7 +187,9 @@ PyramidSpec pyramid_spec(const plc_parameters& p) {
 
 RecoverySpec recovery_spec(const plc_parameters& p, double unit) {
   RecoverySpec spec;
-  if (p.mesh == PLC_MESH_ADAPTIVE) {
+  if (p.mesh != PLC_MESH_ADAPTIVE) {
+    spec.scale.edges = p.edge == 0 ? 1 : p.edge / usual_edge(unit);
+  } else {
     const double delta = unit / kUnitPerDelta;
     spec.sizes.emplace();
     spec.sizes->finest = p.edge_min / (kMeanEdge * delta);
@@ -201,7 +219,7 @@ RecoverySpec recovery_spec(const plc_parameters& p, double unit) {
   m.max_move = static_cast<float>(p.max_move);
   m.bound = static_cast<Bound>(p.bound);
   spec.pad_voxels = kPadVoxels;
-  spec.anisotropy = static_cast<Anisotropy>(p.anisotropy);
+  spec.scale.anisotropy = static_cast<Anisotropy>(p.anisotropy);
   spec.start.init = static_cast<Init>(p.init);
   spec.start.bubbles = {p.bubbles[0], p.bubbles[1], p.bubbles[2]};
   // Without the force towards iso nothing holds a bubble to what it tells.

@@ -19,10 +19,10 @@ MeshSpace mesh_space(const Pyramid& pyramid, int h, Anisotropy anisotropy) {
   return space;
 }
 
-double level_delta(const Pyramid& pyramid, int h, Anisotropy anisotropy) {
+double level_delta(const Pyramid& pyramid, int h, const MeshScale& scale) {
   const PyramidLevel& level = pyramid.levels[static_cast<size_t>(h)];
   double unit = level.unit / pyramid.levels[0].unit;
-  if (anisotropy == Anisotropy::kPhysical) {
+  if (scale.anisotropy == Anisotropy::kPhysical) {
     double cubes =
         level.voxel[0] / level.unit * (level.voxel[1] / level.unit) * (level.voxel[2] / level.unit);
     while (cubes > kCubesPerVoxel) {
@@ -30,7 +30,7 @@ double level_delta(const Pyramid& pyramid, int h, Anisotropy anisotropy) {
       unit *= 2;
     }
   }
-  return unit / kUnitPerDelta;
+  return scale.edges * unit / kUnitPerDelta;
 }
 
 void change_space(Mesh& mesh, const MeshSpace& from, const MeshSpace& to) {

@@ -32,7 +32,12 @@ MeshSpace mesh_space(const Pyramid& pyramid, int h, Anisotropy anisotropy);
 // level, within (14). Where the mesh lives in millimetres it would be as small as the shortest side
 // of a voxel everywhere, and a long voxel have any number of vertices: there U_h is doubled until a
 // voxel has at most kCubesPerVoxel cubes of it.
-double level_delta(const Pyramid& pyramid, int h, Anisotropy anisotropy);
+// edges: how many times as long all of them are as without the user's word.
+struct MeshScale {
+  Anisotropy anisotropy = Anisotropy::kVoxel;
+  double edges = 1;
+};
+double level_delta(const Pyramid& pyramid, int h, const MeshScale& scale);
 
 // Moves the mesh from one space into another; positions and velocities.
 void change_space(Mesh& mesh, const MeshSpace& from, const MeshSpace& to);

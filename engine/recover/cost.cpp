@@ -71,9 +71,9 @@ double area_of(const ImageObject& object, const Executor& executor) {
 
 }  // namespace
 
-double most_vertices(const Pyramid& pyramid, int h, int pad, Anisotropy anisotropy) {
-  const ImageView image = image_view(pyramid, h, pad, mesh_space(pyramid, h, anisotropy));
-  const double delta = level_delta(pyramid, h, anisotropy);
+double most_vertices(const Pyramid& pyramid, int h, int pad, const MeshScale& scale) {
+  const ImageView image = image_view(pyramid, h, pad, mesh_space(pyramid, h, scale.anisotropy));
+  const double delta = level_delta(pyramid, h, scale);
   double vertices = 1;
   for (size_t a = 0; a < 3; ++a) {
     vertices *= image.dims[a] / static_cast<double>(image.scale[a]) / delta;
@@ -82,7 +82,7 @@ double most_vertices(const Pyramid& pyramid, int h, int pad, Anisotropy anisotro
 }
 
 Cost expected_cost(const Pyramid& pyramid, const std::vector<double>& isos, bool inside_above,
-                   int pad, Anisotropy anisotropy, const Executor& executor) {
+                   int pad, const MeshScale& scale, const Executor& executor) {
   Cost cost;
   cost.voxels = 1;
   for (const int64_t dim : pyramid.levels[0].dims) {
@@ -90,11 +90,11 @@ Cost expected_cost(const Pyramid& pyramid, const std::vector<double>& isos, bool
   }
   for (size_t level = 0; level < isos.size(); ++level) {
     const int h = static_cast<int>(level);
-    const ImageView image = image_view(pyramid, h, pad, mesh_space(pyramid, h, anisotropy));
+    const ImageView image = image_view(pyramid, h, pad, mesh_space(pyramid, h, scale.anisotropy));
     const double area = area_of({image, static_cast<float>(isos[level]), inside_above}, executor);
-    const double delta = level_delta(pyramid, h, anisotropy);
-    const double vertices = std::min(area / (kAreaPerVertex * delta * delta),
-                                     most_vertices(pyramid, h, pad, anisotropy));
+    const double delta = level_delta(pyramid, h, scale);
+    const double vertices =
+        std::min(area / (kAreaPerVertex * delta * delta), most_vertices(pyramid, h, pad, scale));
     cost.vertices = std::max(cost.vertices, vertices);
   }
   cost.bytes = cost.vertices * kBytesPerVertex;

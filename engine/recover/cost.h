@@ -13,7 +13,7 @@ namespace plc {
 // Sheets as near as (3) allows, of edges of 1.6 delta in the mean, have a third of it. A surface
 // with more has left the image, or is crumpled by forces that have no rest. `pad`, below too, as in
 // image_view().
-double most_vertices(const Pyramid& pyramid, int h, int pad, Anisotropy anisotropy);
+double most_vertices(const Pyramid& pyramid, int h, int pad, const MeshScale& scale);
 
 struct Cost {
   double vertices = 0;  // of the level that has most
@@ -25,6 +25,6 @@ struct Cost {
 // is right within a third; for noise, which the mesh does not follow, it is too much. isos: of each
 // level; where there are none nothing is known, and the cost is 0 but for the voxels.
 Cost expected_cost(const Pyramid& pyramid, const std::vector<double>& isos, bool inside_above,
-                   int pad, Anisotropy anisotropy, const Executor& executor);
+                   int pad, const MeshScale& scale, const Executor& executor);
 
 }  // namespace plc

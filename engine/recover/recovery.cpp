@@ -127,7 +127,7 @@ Status Recovery::start_level() {
 void Recovery::enter(int h) {
   entered_ = h;
   const MeshSpace before = space_;
-  space_ = mesh_space(pyramid_, h, spec_.anisotropy);
+  space_ = mesh_space(pyramid_, h, spec_.scale.anisotropy);
   mesh_.sizing = nullptr;
   if (!spec_.obstacle_abc.empty() && !obstacles_) place_obstacles();
   if (mesh_.vertex_count() != 0) change_space(mesh_, before, space_);
@@ -241,7 +241,7 @@ void Recovery::start_round(int number, bool late) {
   round_.number = number;
   round_.late = late;
   estimate_.start_round();
-  double room = most_vertices(pyramid_, level_, spec_.pad_voxels, spec_.anisotropy);
+  double room = most_vertices(pyramid_, level_, spec_.pad_voxels, spec_.scale);
   // most_vertices() is for edges of delta; the finest sizes have more vertices to the same area.
   if (spec_.sizes) room *= std::max(1.0, 1 / (spec_.sizes->finest * spec_.sizes->finest));
   // A surface that starts outside of the image may have more.

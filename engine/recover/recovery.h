@@ -39,7 +39,7 @@ struct RecoverySpec {
   // Of (8): the largest norm, in window per U_h; used norms are <= 1.
   double gradient_bound = defaults::kGradientBound;
   int pad_voxels = kPadVoxels;  // by which the pyramid's I_0 is larger than the input on every side
-  Anisotropy anisotropy = Anisotropy::kVoxel;
+  MeshScale scale;
   StartSpec start;
   // Attachments and pins, their places in voxel indices of the unpadded I_0; the force is not read.
   UserConstraints user;
@@ -171,7 +171,7 @@ class Recovery {
   void renumber();
   void renumber_if_scattered();
   void estimate_progress();
-  double delta_of(int h) const { return level_delta(pyramid_, h, spec_.anisotropy); }
+  double delta_of(int h) const { return level_delta(pyramid_, h, spec_.scale); }
   Status check_growth() const;
   double unit_of(int h) const;
   std::optional<float> iso_of(int h) const {

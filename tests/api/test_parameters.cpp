@@ -355,7 +355,7 @@ TEST_CASE("the engine's own defaults are those that are shipped", "[parameters]"
   CHECK(own.inside_above == shipped.inside_above);
   CHECK(own.gradient_bound == shipped.gradient_bound);
   CHECK(own.pad_voxels == shipped.pad_voxels);
-  CHECK(own.anisotropy == shipped.anisotropy);
+  CHECK(own.scale.anisotropy == shipped.scale.anisotropy);
   CHECK(own.start.init == shipped.start.init);
   CHECK(own.start.bubbles == shipped.start.bubbles);
   CHECK(own.late_bubbles == shipped.late_bubbles);
@@ -385,7 +385,7 @@ TEST_CASE("the sizes of an adaptive mesh are the engine's own where nothing is s
           "[parameters]") {
   plc_parameters p = defaults();
   p.mesh = PLC_MESH_ADAPTIVE;
-  REQUIRE(plc::derive_mesh(1, p).ok());
+  REQUIRE(plc::derive_mesh(1, 100, p).ok());
   const auto shipped = plc::recovery_spec(p, 1).sizes;
   const plc::SizeSpec own;
   REQUIRE(shipped.has_value());
@@ -415,11 +415,19 @@ TEST_CASE("the pyramid is built with the parameters' window, padding and reducti
 TEST_CASE("lengths of an adaptive mesh are derived from the voxels, and checked against them",
           "[parameters]") {
   plc_parameters p = defaults();
-  CHECK(plc::derive_mesh(2, p).ok());
+  CHECK(plc::derive_mesh(2, 100, p).ok());
   CHECK(p.edge_max == 0);  // a uniform mesh has none
+  CHECK(p.edge == Approx(2.5));
+  CHECK(plc::recovery_spec(p, 2).scale.edges == 1);
+  p.edge = 5;
+  CHECK(plc::derive_mesh(2, 100, p).ok());
+  CHECK(plc::recovery_spec(p, 2).scale.edges == Approx(2));
+  p.edge = 0.4;
+  CHECK(plc::derive_mesh(2, 100, p).message() ==
+        "edges of 0.4 mm: must be within 0.5 .. 10 mm for this image");
   CHECK_FALSE(plc::recovery_spec(p, 2).sizes.has_value());
   p.mesh = PLC_MESH_ADAPTIVE;
-  REQUIRE(plc::derive_mesh(2, p).ok());
+  REQUIRE(plc::derive_mesh(2, 100, p).ok());
   CHECK(p.tolerance == Approx(2.0 / 24));
   CHECK(p.edge_min == Approx(1.25));
   CHECK(p.edge_max == Approx(10));
@@ -429,7 +437,7 @@ TEST_CASE("lengths of an adaptive mesh are derived from the voxels, and checked 
   CHECK(sizes->coarsest == Approx(4));
   CHECK(sizes->tolerance == Approx(0.05));
   p.edge_max = 1;
-  CHECK(plc::derive_mesh(2, p).message() ==
+  CHECK(plc::derive_mesh(2, 100, p).message() ==
         "edges of 1.25 .. 1 mm: must be a range within 0.3125 .. 19.75 mm for voxels of 2 mm");
 }
 

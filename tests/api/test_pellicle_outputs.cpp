@@ -115,6 +115,39 @@ TEST_CASE("the surface of a run has not converged before its level ends", "[pell
   CHECK(converged() == 1);
 }
 
+TEST_CASE("all edges of a uniform mesh are as long as the caller wants them",
+          "[pellicle_outputs]") {
+  const Context context = make_context();
+  const Volume volume = edged_ball(60, 22);
+  const plc_image image = image_of(volume);
+  plc_parameters p = parameters(0.5, 2);
+  const auto made = [&](double edge) {
+    p.edge = edge;
+    return extract(context.get(), image, p);
+  };
+  const Surface usual = made(0);
+  CHECK(parameters_of(usual.get()).edge == 1.25);
+  CHECK(plc_surface_hash(made(1.25).get()) == plc_surface_hash(usual.get()));
+  const double volume_of_ball = measured(context.get(), usual.get(), PLC_SPACE_LPS).volume;
+  for (const double edge : {0.4, 0.8, 2.5, 5.0}) {
+    CAPTURE(edge);
+    const Surface surface = made(edge);
+    CHECK(plc_surface_converged(surface.get()) == 1);
+    plc_check check;
+    plc_check_defaults(&check);
+    REQUIRE(plc_surface_check(context.get(), surface.get(), &check) == PLC_OK);
+    CHECK(check.valid == 1);
+    CHECK(check.edge_mean == Approx(edge).epsilon(0.2));
+    CHECK(measured(context.get(), surface.get(), PLC_SPACE_LPS).volume ==
+          Approx(volume_of_ball).epsilon(0.02));
+  }
+  p.edge = 0.2;
+  plc_surface* none = nullptr;
+  CHECK(plc_extract(context.get(), &image, &p, nullptr, &none) == PLC_INVALID_ARGUMENT);
+  CHECK(std::string(plc_context_message(context.get())) ==
+        "edges of 0.2 mm: must be within 0.25 .. 6 mm for this image");
+}
+
 TEST_CASE("edges are as long as the header says", "[pellicle_outputs]") {
   const Context context = make_context();
   const auto check_of = [&](double radius, double voxel, plc_mesh_kind mesh, double& tolerance) {

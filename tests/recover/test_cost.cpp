@@ -18,7 +18,7 @@ samples::Run ball(std::array<double, 3> spacing = {1, 1, 1}) {
 
 plc::Cost cost_of(const samples::Run& run, Anisotropy anisotropy) {
   return plc::expected_cost(samples::pyramid_of(run), run.recovery.isos, run.recovery.inside_above,
-                            run.recovery.pad_voxels, anisotropy, samples::kSerial);
+                            run.recovery.pad_voxels, {anisotropy}, samples::kSerial);
 }
 
 }  // namespace
@@ -27,7 +27,7 @@ TEST_CASE("what a run will cost is told within a third before it starts", "[cost
   const samples::Run run = ball();
   const samples::Recovered r = samples::recover(run);
   REQUIRE(r.status.ok());
-  const plc::Cost cost = cost_of(run, run.recovery.anisotropy);
+  const plc::Cost cost = cost_of(run, run.recovery.scale.anisotropy);
   CHECK(cost.vertices == Approx(r.mesh.vertex_count()).epsilon(0.33));
   CHECK(cost.voxels == 40 * 40 * 40);
   CHECK(cost.bytes > 200 * cost.vertices);
@@ -41,7 +41,7 @@ TEST_CASE("no image has room for more vertices than so many for each voxel", "[c
       for (int h = 0; h <= 1; ++h) {
         const auto& dims = pyramid.levels[static_cast<size_t>(h)].dims;
         const auto voxels = static_cast<double>(dims[0] * dims[1] * dims[2]);
-        const double most = plc::most_vertices(pyramid, h, plc::kPadVoxels, method);
+        const double most = plc::most_vertices(pyramid, h, plc::kPadVoxels, {method});
         CAPTURE(side, static_cast<int>(method), h);
         CHECK(most >= 1.7 * voxels);
         CHECK(most <= 1.8 * plc::kCubesPerVoxel * voxels);
@@ -54,9 +54,9 @@ TEST_CASE("voxels up to 1 : 1 : 8 leave the mesh in millimetres as fine as the p
           "[cost]") {
   const plc::Pyramid near = samples::pyramid_of(ball({1, 1, 7.9})),
                      far = samples::pyramid_of(ball({1, 1, 320}));
-  CHECK(plc::level_delta(near, 0, Anisotropy::kPhysical) == Approx(1 / plc::kUnitPerDelta));
-  CHECK(plc::level_delta(far, 0, Anisotropy::kPhysical) == Approx(4 / plc::kUnitPerDelta));
-  CHECK(plc::level_delta(far, 0, Anisotropy::kVoxel) == Approx(1 / plc::kUnitPerDelta));
+  CHECK(plc::level_delta(near, 0, {Anisotropy::kPhysical}) == Approx(1 / plc::kUnitPerDelta));
+  CHECK(plc::level_delta(far, 0, {Anisotropy::kPhysical}) == Approx(4 / plc::kUnitPerDelta));
+  CHECK(plc::level_delta(far, 0, {Anisotropy::kVoxel}) == Approx(1 / plc::kUnitPerDelta));
 }
 
 TEST_CASE("a surface that its forces drive out of the image for ever is an error that says so",

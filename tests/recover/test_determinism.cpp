@@ -125,7 +125,7 @@ Run forces_run() {
   run.recovery.user.attachments = {{{20, 32, 32}, 12, 0.5F}};
   run.recovery.user.pins = {{{44, 32, 32}, 10}};
   run.recovery.model.bound = plc::Bound::kScale;
-  run.recovery.anisotropy = plc::Anisotropy::kMetric;
+  run.recovery.scale.anisotropy = plc::Anisotropy::kMetric;
   run.volume.spacing = {1, 1.2, 1.5};
   return run;
 }

@@ -160,7 +160,7 @@ TEST_CASE("no pass writes what its row of the table does not say", "[pass_observ
       {"metric, pinned",
        [](samples::Run& run) {
          run.volume.spacing = {1, 1, 2};
-         run.recovery.anisotropy = plc::Anisotropy::kMetric;
+         run.recovery.scale.anisotropy = plc::Anisotropy::kMetric;
          run.recovery.user.pins = {{{16, 16, 16}, 6}};
        }},
       {"a force of the user's", [](samples::Run& run) {

@@ -215,7 +215,7 @@ TEST_CASE("anisotropic voxels give the same ball with each method of 4.4", "[rec
         "ball", samples::sphere_potential(samples::empty_volume({28, 28, 14}, {1, 1, 2}), 0.35),
         0.5, 1);
     run.recovery.model.curvature = 0.1F;
-    run.recovery.anisotropy = method;
+    run.recovery.scale.anisotropy = method;
     const Recovered r = recover(run);
     REQUIRE(r.status.ok());
     CHECK(samples::euler(r.mesh) == 2);

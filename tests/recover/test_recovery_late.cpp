@@ -114,7 +114,7 @@ TEST_CASE("the volume of late bubbles is in cubic millimetres, whatever the spac
        {plc::Anisotropy::kPhysical, plc::Anisotropy::kVoxel, plc::Anisotropy::kMetric}) {
     Run run = hidden_run(0);
     run.volume.spacing = {2, 2, 3};
-    run.recovery.anisotropy = method;
+    run.recovery.scale.anisotropy = method;
     run.recovery.start.init = plc::Init::kSeeds;
     run.recovery.start.seeds = {{{29.5, 13.5, 13.5}, {12.5, 12.5, 12.5}}};
     const Recovered r = recover(run);
@@ -179,7 +179,7 @@ TEST_CASE("a user who says stop gets that level's surface, in that level's space
     for (const int last : {2, 1}) {
       Run run = ball_run(2);
       run.volume.spacing = {1, 1, 1.5};
-      run.recovery.anisotropy = method;
+      run.recovery.scale.anisotropy = method;
       std::vector<plc::Vec3> seen;
       Recovered r;
       const plc::Schedule schedule(1);

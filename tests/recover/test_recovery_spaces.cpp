@@ -23,7 +23,7 @@ Run flat_run(Anisotropy method) {
       "ball",
       samples::sphere_potential(samples::empty_volume({44, 44, 11}, {1, 1, 4}), kRadius / 44), 0.5,
       0);
-  run.recovery.anisotropy = method;
+  run.recovery.scale.anisotropy = method;
   run.recovery.model.curvature = 0.1F;
   return run;
 }
@@ -54,7 +54,7 @@ struct Shape {
 
 Shape shape_of(const Run& run, const Mesh& mesh) {
   const plc::Pyramid pyramid = samples::pyramid_of(run);
-  const plc::MeshSpace space = plc::mesh_space(pyramid, 0, run.recovery.anisotropy);
+  const plc::MeshSpace space = plc::mesh_space(pyramid, 0, run.recovery.scale.anisotropy);
   const std::vector<samples::Point> at = millimetres(run, mesh, space);
   Shape shape{};
   shape.volume = samples::volume(mesh);

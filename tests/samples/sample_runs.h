@@ -86,7 +86,7 @@ inline plc::Model random_model(Random& random) {
 inline void choose_bubbles(Run& run, Random& random) {
   const auto& spacing = run.volume.spacing;
   const double finest = std::min({spacing[0], spacing[1], spacing[2]});
-  const bool physical = run.recovery.anisotropy == plc::Anisotropy::kPhysical;
+  const bool physical = run.recovery.scale.anisotropy == plc::Anisotropy::kPhysical;
   double delta = 1 / plc::kUnitPerDelta;
   for (int h = 0; h < run.pyramid.levels; ++h) delta *= run.pyramid.reduction;
   auto& start = run.recovery.start;
@@ -131,7 +131,7 @@ inline Run random_run(uint64_t seed) {
   constexpr plc::Anisotropy kMethods[] = {plc::Anisotropy::kPhysical, plc::Anisotropy::kMetric,
                                           plc::Anisotropy::kVoxel};
   constexpr const char* kMethodNames[] = {"", "mm", "voxels", "metric"};
-  r.anisotropy = random.one_of(kMethods);
+  r.scale.anisotropy = random.one_of(kMethods);
   const auto& spacing = run.volume.spacing;
   if (random.integer(0, 2) == 0) choose_bubbles(run, random);
   constexpr double kEpsilons[] = {1e-4, 1e-5, 5e-6};
@@ -148,7 +148,7 @@ inline Run random_run(uint64_t seed) {
                 noise_amplitude, run.iso, run.pyramid.levels, run.pyramid.reduction,
                 r.start.init == plc::Init::kBubble ? "bubble" : "bubbles", r.start.bubbles[0],
                 r.start.bubbles[1], r.start.bubbles[2],
-                kMethodNames[static_cast<int>(r.anisotropy)],
+                kMethodNames[static_cast<int>(r.scale.anisotropy)],
                 static_cast<double>(r.model.curvature), static_cast<double>(r.model.spring),
                 static_cast<int>(r.model.rest_length), static_cast<double>(r.model.attraction),
                 static_cast<double>(r.model.mass), static_cast<double>(r.model.damping),

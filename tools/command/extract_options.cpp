@@ -284,6 +284,9 @@ class Declarations {
     choice("--mesh", kMeshes, p_.mesh,
            "Edges of one length, the voxels' (uniform, the paper's), or by how much the surface in "
            "the image bends (adaptive)");
+    number("--edge", p_.edge,
+           "Uniform: about the mean of all edges, mm, from a quarter of a voxel to a tenth of the "
+           "image; 0: 1.25 voxels");
     number("--tolerance", p_.tolerance,
            "Adaptive: mean distance in mm between facets and the surface that is aimed at; 0: 1/24 "
            "of a voxel");

@@ -30,6 +30,7 @@ Json parameters_json(const plc_parameters& p, ExtractOptions options) {
           {"anisotropy", name_of(p.anisotropy, kAnisotropies)},
           {"init", init_text(options)},
           {"mesh", name_of(p.mesh, kMeshes)},
+          {"edge", p.edge},
           {"tolerance", p.tolerance},
           {"edge_range", {p.edge_min, p.edge_max}},
           {"curvature", p.curvature},

@@ -23,6 +23,7 @@ class CommonChanges(TypedDict, total=False):
     reduction: float
     init: Literal["bubble", "bubbles", "seeds", "iso", "mask", "mesh"]
     bubbles: tuple[int, int, int]
+    edge: float
     tolerance: float
     edge_min: float
     edge_max: float

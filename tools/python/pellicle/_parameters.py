@@ -54,6 +54,9 @@ class Parameters:
         How many bubbles along x, y, z, each 1 .. 256.
     mesh : {"uniform", "adaptive"}
         Edges of one length, the voxels' (3.2), or by how much the image's iso-surface bends.
+    edge : float
+        Of a uniform mesh: about the mean of its edges, mm, from a quarter of a voxel to a tenth of
+        the image; 0: 1.25 voxels.
     tolerance : float
         Of an adaptive mesh: the mean distance of its facets from that surface, mm; 0: 1/24 of a
         voxel.
@@ -109,6 +112,7 @@ class Parameters:
     init: Literal["bubble", "bubbles", "seeds", "iso", "mask", "mesh"] = _D["init"]
     bubbles: tuple[int, int, int] = _D["bubbles"]
     mesh: Literal["uniform", "adaptive"] = _D["mesh"]
+    edge: float = _D["edge"]
     tolerance: float = _D["tolerance"]
     edge_min: float = _D["edge_min"]
     edge_max: float = _D["edge_max"]
