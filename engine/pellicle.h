@@ -297,8 +297,8 @@ typedef struct plc_parameters {
   /* the mesh, see above; lengths in mm where voxels have their shortest side, on I_0. 0: derived
      from the voxels; the result's parameters tell */
   plc_mesh_kind mesh;
-  double edge; /* of a uniform mesh: about the mean of its edges, from a quarter of a voxel to a tenth
-                  of the image's shortest side; 0: 1.25 voxels */
+  double edge; /* of a uniform mesh: about the mean of its edges, from a quarter of a voxel to a
+                  tenth of the image's shortest side; 0: 1.25 voxels */
   double tolerance; /* of an adaptive mesh: the mean distance of its facets from a surface that
                        bends as the image's does, > 0; 0: 1/24 of a voxel */
   double edge_min, edge_max; /* of an adaptive mesh: mean edges lie between, an eighth of those of a

@@ -78,7 +78,7 @@ struct Head {
     recovery = ct.prepare(p, schedule, pyramid);
     recover(schedule);
     guide.image = plc::image_view(pyramid, 1, recovery.pad_voxels,
-                                  plc::mesh_space(pyramid, 1, recovery.anisotropy));
+                                  plc::mesh_space(pyramid, 1, recovery.scale.anisotropy));
     guide.iso = static_cast<float>(recovery.isos[1]);
   }
 

@@ -31,8 +31,8 @@ double level_iso_bound(const plc_parameters& parameters, double background);
 
 PyramidSpec pyramid_spec(const plc_parameters& parameters);
 // Everything but the iso-values of the levels and what plc_extras holds.
-// Fills in what is 0 of the mesh's lengths. unit: U_0, side: the image's shortest one, mm. Errors: kInvalidArgument, edges that the
-// image's voxels do not allow.
+// Fills in what is 0 of the mesh's lengths. unit: U_0, side: the image's shortest one, mm. Errors:
+// kInvalidArgument, edges that the image's voxels do not allow.
 Status derive_mesh(double unit, double side, plc_parameters& parameters);
 
 // unit: U_0, mm.
