@@ -820,6 +820,47 @@ PLC_API plc_status plc_mesh_distance(plc_context* context, const double* xyz, in
                                      const uint32_t* other_abc, int64_t other_face_count,
                                      double* distance, plc_distances* summary);
 
+/* ---- simplifying any mesh --------------------------------------------------------------- */
+
+/* How far something has come, 0 .. 1, never falling. Return 0 to go on, any other to cancel. */
+typedef int (*plc_fraction_fn)(double fraction, void* user);
+
+typedef struct plc_simplify_options {
+  size_t struct_size;
+  double tolerance;         /* > 0, in the unit of the coordinates; has no default */
+  int32_t one_sided;        /* not 0: the result is near the mesh, but need not be the other way */
+  plc_fraction_fn progress; /* on the calling thread, now and then; NULL: nobody asks */
+  void* progress_user;
+} plc_simplify_options;
+PLC_API void plc_simplify_options_defaults(plc_simplify_options* options);
+
+/* What has become of a mesh. Distances are from the places of all faces, not of vertices alone, to
+ * the nearest place of the other mesh. They are measured when all is done, whatever has been proved
+ * on the way: at_least is that of some place; at_most is exceeded by none, but for rounding, and is
+ * at most 2 % above the larger of at_least and an eighth of the tolerance. */
+typedef struct plc_simplified {
+  size_t struct_size;
+  int64_t vertices, faces;
+  double from_at_least, from_at_most; /* from the result to the mesh that was given */
+  double to_at_least, to_at_most;     /* from the mesh that was given to the result */
+} plc_simplified;
+PLC_API void plc_simplified_defaults(plc_simplified* simplified);
+
+/* A mesh of fewer vertices, no place of which is farther than the tolerance from the given one nor,
+ * unless one_sided, a place of that from it: both Hausdorff distances, proved. The mesh must be
+ * valid (plc_check_mesh), else PLC_INVALID_DATA; so is the result, exactly, with the same
+ * components, genus and orientation. The tolerance must be at least 1e-12 of the largest coordinate.
+ * Where all coordinates are floats, so are those of the result. Edges are collapsed, those of the
+ * least quadric error (Garland and Heckbert, 1997) first, until none is left that could be.
+ *
+ * new_xyz: room for 3 * vertex_count values; new_abc: for 3 * face_count indices; they must not
+ * overlap the mesh. What is written to them are simplified->vertices and ->faces. struct_size of
+ * simplified must be set. PLC_CANCELLED where progress asks. */
+PLC_API plc_status plc_mesh_simplify(plc_context* context, const double* xyz, int64_t vertex_count,
+                                     const uint32_t* abc, int64_t face_count,
+                                     const plc_simplify_options* options, double* new_xyz,
+                                     uint32_t* new_abc, plc_simplified* simplified);
+
 #ifdef __cplusplus
 }
 #endif

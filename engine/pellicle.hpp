@@ -80,6 +80,12 @@ inline void fill(plc_component_measures& s) {
 inline void fill(plc_distances& s) {
   plc_distances_defaults(&s);
 }
+inline void fill(plc_simplify_options& s) {
+  plc_simplify_options_defaults(&s);
+}
+inline void fill(plc_simplified& s) {
+  plc_simplified_defaults(&s);
+}
 
 template <auto destroy>
 struct Destroy {
@@ -454,6 +460,23 @@ inline Distances distances(const Context& context, const Mesh& from, const Mesh&
                                    from.faces(), to.xyz.data(), to.vertices(), to.abc.data(),
                                    to.faces(), d.of_vertex.data(), &d.summary));
   return d;
+}
+
+struct Simplified {
+  plc_simplified summary = defaults<plc_simplified>();
+  Mesh mesh;
+};
+inline Simplified simplify(const Context& context, const Mesh& mesh,
+                           const plc_simplify_options& options) {
+  Simplified s;
+  s.mesh.xyz.resize(mesh.xyz.size());
+  s.mesh.abc.resize(mesh.abc.size());
+  context.demand(plc_mesh_simplify(context.get(), mesh.xyz.data(), mesh.vertices(), mesh.abc.data(),
+                                   mesh.faces(), &options, s.mesh.xyz.data(), s.mesh.abc.data(),
+                                   &s.summary));
+  s.mesh.xyz.resize(3 * detail::size(s.summary.vertices));
+  s.mesh.abc.resize(3 * detail::size(s.summary.faces));
+  return s;
 }
 
 }  // namespace pellicle

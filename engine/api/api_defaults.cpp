@@ -89,4 +89,15 @@ void plc_distances_defaults(plc_distances* distances) {
   clear_output(distances);
 }
 
+void plc_simplify_options_defaults(plc_simplify_options* options) {
+  if (options == nullptr) return;
+  *options = {};
+  options->struct_size = sizeof *options;
+}
+
+void plc_simplified_defaults(plc_simplified* simplified) {
+  if (simplified == nullptr) return;
+  clear_output(simplified);
+}
+
 }  // extern "C"

@@ -27,6 +27,10 @@ class FaceTree {
 
   size_t leaf_count() const { return leaves_.size(); }
   size_t face_count() const { return count_; }
+  // The faces in the order of the leaves, so that those of neighbouring places are near each other.
+  uint32_t face_at(size_t place) const {
+    return leaves_[place / kLeafFaces].face[place % kLeafFaces];
+  }
 
   // Calls pair(f, g) for every two faces whose boxes overlap, one of them in leaf `leaf` and the
   // other in the same or a later leaf; over all leaves, once for each pair.

@@ -223,6 +223,8 @@ TEST_CASE("measures and checks of a mesh survive every allocation that fails", "
   const auto faces = static_cast<int64_t>(abc.size() / 3);
   constexpr double kUntouched = -7;
   std::vector<double> values(xyz.size(), kUntouched);
+  std::vector<double> new_xyz(xyz.size());
+  std::vector<uint32_t> new_abc(abc.size());
   plc_context* c = context.get();
   using Call = std::function<plc_status()>;
   const std::vector<Call> calls = {
@@ -248,6 +250,16 @@ TEST_CASE("measures and checks of a mesh survive every allocation that fails", "
       [&] {
         return plc_mesh_distance(c, xyz.data(), vertices, abc.data(), faces, xyz.data(), vertices,
                                  abc.data(), faces, values.data(), nullptr);
+      },
+      [&] {
+        plc_simplify_options options;
+        plc_simplify_options_defaults(&options);
+        options.tolerance = 0.5;
+        plc_simplified simplified;
+        plc_simplified_defaults(&simplified);
+        simplified.struct_size = sizeof simplified;
+        return plc_mesh_simplify(c, xyz.data(), vertices, abc.data(), faces, &options,
+                                 new_xyz.data(), new_abc.data(), &simplified);
       },
       [&] {
         plc_surface* made = nullptr;

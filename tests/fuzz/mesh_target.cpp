@@ -72,6 +72,7 @@ class Measurer {
     const bool readable = check();
     measure(readable);
     paths(readable);
+    simplify();
     surface();
   }
 
@@ -149,6 +150,32 @@ class Measurer {
                                  mesh_.faces, other.xyz.data(), other.vertices, other.abc.data(),
                                  other.faces, apart.data(), &summary)) == readable,
             "distances where the mesh is not read, or none where it is");
+  }
+
+  void simplify() {
+    plc_simplify_options options;
+    plc_simplify_options_defaults(&options);
+    options.tolerance = input_.below(4) == 0 ? random_double(input_) : 0.1 * input_.below(10);
+    options.one_sided = input_.below(2) == 0 ? 1 : 0;
+    Room<double> xyz(3 * mesh_.vertices);
+    Room<uint32_t> abc(3 * mesh_.faces);
+    plc_simplified told{};
+    told.struct_size = sizeof told;
+    if (!ok(plc_mesh_simplify(context_.get(), mesh_.xyz.data(), mesh_.vertices, mesh_.abc.data(),
+                              mesh_.faces, &options, xyz.data(), abc.data(), &told))) {
+      return;
+    }
+    require(check_.valid == 1, "a simplified mesh of one that is not valid");
+    require(told.from_at_most <= options.tolerance &&
+                (options.one_sided != 0 || told.to_at_most <= options.tolerance),
+            "a simplified mesh too far away");
+    plc_check check{};
+    check.struct_size = sizeof check;
+    require(ok(plc_check_mesh(context_.get(), xyz.data(), told.vertices, abc.data(), told.faces,
+                              &check)) &&
+                check.valid == 1 && check.measures.components == check_.measures.components &&
+                check.measures.genus == check_.measures.genus,
+            "a simplified mesh that is not valid, or of another shape");
   }
 
   void surface() {

@@ -95,6 +95,23 @@ def test_distances(sphere):
         pellicle.distance(sphere, (np.zeros((0, 3)), np.zeros((0, 3), int)))
 
 
+def test_simplified_meshes_are_valid_and_within_the_tolerance(sphere):
+    simple = pellicle.simplify(sphere, 0.1)
+    assert len(simple.vertices) < sphere.vertex_count / 3
+    assert pellicle.check_mesh((simple.vertices, simple.faces)).valid
+    back = pellicle.distance(sphere, (simple.vertices, simple.faces)).max
+    assert back <= simple.to_at_most <= 0.1 and simple.from_at_most <= 0.1
+    nearer = pellicle.simplify(sphere, 0.1, one_sided=True)
+    assert len(nearer.vertices) < sphere.vertex_count / 3 and nearer.from_at_most <= 0.1
+    surface = sphere.simplify(0.1)
+    assert surface.vertex_count == len(simple.vertices)
+    assert surface.space == sphere.space and surface.check().valid
+    with pytest.raises(pellicle.InvalidData, match="edge"):
+        pellicle.simplify((simple.vertices, simple.faces[1:]), 0.1)
+    with pytest.raises(pellicle.InvalidArgument, match="tolerance"):
+        pellicle.simplify(sphere, float("nan"))
+
+
 def test_arrays_of_other_types_are_taken_where_they_fit():
     vertices, faces = octahedron()
     expected = pellicle.check_mesh((vertices, faces))

@@ -24,6 +24,7 @@
 #include "tools/command/command_mesh.h"
 #include "tools/command/command_phantom.h"
 #include "tools/command/command_render.h"
+#include "tools/command/command_simplify.h"
 #include "tools/command/command_view.h"
 #include "tools/command/interrupt.h"
 #include "tools/command/manual_page.h"
@@ -72,6 +73,7 @@ class Command {
     check_ = add("check", "Tell what a mesh is and whether it is a valid closed surface");
     measure_ = add("measure", "Measure a mesh: volumes, moments, curvatures, geodesics, distances");
     mesh_ = add("mesh", "Convert a mesh, keep parts of it, merge several");
+    simplify_ = add("simplify", "Make a mesh of fewer vertices, within a distance that is proved");
     phantom_ = add("phantom", "Write a synthetic test volume");
     render_ = add("render", "Draw a shaded picture of a mesh");
     view_ = add("view", "Write a page that shows an image and surfaces in any browser");
@@ -84,12 +86,14 @@ class Command {
     add_check_options(*check_, check_options_);
     add_measure_options(*measure_, measure_options_);
     add_mesh_options(*mesh_, mesh_options_);
+    add_simplify_options(*simplify_, simplify_options_);
     add_phantom_options(*phantom_, phantom_arguments_);
     add_render_options(*render_, render_options_);
     add_view_options(*view_, view_options_);
     add_cohort_options(*cohort_, cohort_options_);
     for (CLI::App* command : cohort_->get_subcommands({})) demand_file_names(*command);
-    for (CLI::App* command : {extract_, info_, check_, measure_, mesh_, phantom_, render_, view_}) {
+    for (CLI::App* command :
+         {extract_, info_, check_, measure_, mesh_, simplify_, phantom_, render_, view_}) {
       demand_file_names(*command);
     }
   }
@@ -108,8 +112,8 @@ class Command {
       const auto unknown = app_.remaining();
       if (app_.get_subcommands().empty() && !unknown.empty()) {
         return fail(unknown[0] +
-                    ": unknown command; extract, info, check, measure, mesh, phantom, render, view "
-                    "or cohort");
+                    ": unknown command; extract, info, check, measure, mesh, simplify, phantom, "
+                    "render, view or cohort");
       }
       if (cohort_->parsed() && cohort_->get_subcommands().empty()) {
         return fail("cohort: what is to be done is one of plan, run, status, collect or submit");
@@ -121,6 +125,7 @@ class Command {
     if (check_->parsed()) return run_check(check_options_);
     if (measure_->parsed()) return run_measure(measure_options_);
     if (mesh_->parsed()) return run_mesh(mesh_options_);
+    if (simplify_->parsed()) return run_simplify(simplify_options_);
     if (phantom_->parsed()) return run_phantom(phantom_arguments_);
     if (render_->parsed()) return run_render(render_options_);
     if (cohort_->parsed()) return run_cohort_command(*cohort_, cohort_options_, interrupt_);
@@ -140,6 +145,7 @@ class Command {
   CLI::App* check_ = nullptr;
   CLI::App* measure_ = nullptr;
   CLI::App* mesh_ = nullptr;
+  CLI::App* simplify_ = nullptr;
   CLI::App* phantom_ = nullptr;
   CLI::App* render_ = nullptr;
   CLI::App* view_ = nullptr;
@@ -149,6 +155,7 @@ class Command {
   CheckOptions check_options_;
   MeasureOptions measure_options_;
   MeshOptions mesh_options_;
+  SimplifyOptions simplify_options_;
   PhantomArguments phantom_arguments_;
   RenderOptions render_options_;
   ViewOptions view_options_;

@@ -17,9 +17,9 @@ constexpr double kSlicerPeriod = 0.1;
 // Before this much is done an estimate of the time left means nothing.
 constexpr double kFirstEstimate = 0.02;
 
-std::string left_of(const plc_progress& p) {
-  if (p.fraction < kFirstEstimate) return "";
-  const double left = p.seconds * (1 - p.fraction) / p.fraction;
+std::string left_of(double fraction, double seconds) {
+  if (fraction < kFirstEstimate) return "";
+  const double left = seconds * (1 - fraction) / fraction;
   char text[48];
   if (left < 100) {
     std::snprintf(text, sizeof text, ", about %.0f s left", std::max(1.0, std::ceil(left)));
@@ -64,15 +64,19 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::update(const plc_progress& p) {
-  if (to_ == Progress::kNone || p.seconds < due_) return;
-  due_ = p.seconds + period_of(to_, terminal_);
+  update(text_of(p), p.fraction, p.seconds);
+}
+
+void ProgressLine::update(const std::string& text, double fraction, double seconds) {
+  if (to_ == Progress::kNone || seconds < due_) return;
+  due_ = seconds + period_of(to_, terminal_);
   if (to_ == Progress::kSlicer) {
-    told_ = std::max(told_, p.fraction);
-    tell_slicer(told_, text_of(p));
+    told_ = std::max(told_, fraction);
+    tell_slicer(told_, text);
     return;
   }
-  std::fprintf(stderr, terminal_ ? "\r\033[K%s%s" : "%s%s\n", text_of(p).c_str(),
-               left_of(p).c_str());
+  std::fprintf(stderr, terminal_ ? "\r\033[K%s%s" : "%s%s\n", text.c_str(),
+               left_of(fraction, seconds).c_str());
   std::fflush(stderr);
   written_ = true;
 }

@@ -1,6 +1,8 @@
 // What a long run tells of how far it is: people on stderr, by one line that is rewritten on a
 // terminal, else by a line now and then; or 3D Slicer on stdout.
 #pragma once
+#include <string>
+
 #include "engine/pellicle.h"
 
 namespace plc::tools {
@@ -19,6 +21,8 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void update(const plc_progress& progress);
+  // `text` is how far it is, `fraction` what is done.
+  void update(const std::string& text, double fraction, double seconds);
   void clear();
   void done();  // when all is written
 

@@ -26,6 +26,7 @@ from ._meshes import (
     distance,
     geodesic,
     nearest_vertex,
+    simplify,
 )
 from ._parameters import Parameters
 from ._pellicle import version
@@ -46,6 +47,7 @@ from ._records import (
     Scalar,
     Seconds,
     Simd,
+    Simplified,
     Space,
     Verdict,
 )
@@ -84,6 +86,7 @@ __all__ = [
     "Scalar",
     "Seconds",
     "Simd",
+    "Simplified",
     "Space",
     "Surface",
     "Verdict",
@@ -98,6 +101,7 @@ __all__ = [
     "geometry_from_affine",
     "nearest_vertex",
     "read",
+    "simplify",
     "threshold_otsu",
     "version",
 ]

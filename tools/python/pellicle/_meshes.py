@@ -19,6 +19,7 @@ from ._records import (
     Components,
     Curvature,
     Distances,
+    Simplified,
     check_of,
 )
 from ._values import integer, plain_array, real_array
@@ -175,3 +176,36 @@ def distance(mesh: MeshLike, other: MeshLike, *, context: Context | None = None)
     arrays, others = arrays_of(mesh), arrays_of(other, "other")
     at_vertices, summary = _pellicle.distance(core_of(context), arrays, others)
     return Distances(at_vertices=at_vertices, **summary)
+
+
+def simplify(
+    mesh: MeshLike, tolerance: float, *, one_sided: bool = False, context: Context | None = None
+) -> Simplified:
+    """A mesh of fewer vertices within a distance.
+
+    Parameters
+    ----------
+    mesh : Surface or (vertices, faces)
+        Valid: `check_mesh` tells.
+    tolerance : float
+        No place of either mesh, on faces too, is farther from the other one.
+    one_sided : bool
+        That places of the given mesh are near the result is not asked for.
+    context : Context, optional
+
+    Returns
+    -------
+    Simplified
+        Valid, too, with the same components and genus; the distances are proved.
+
+    Raises
+    ------
+    InvalidData
+        Where the mesh is not closed, oriented and free of self-intersections: says what is wrong.
+    InvalidArgument
+        Where the tolerance is not above 0 and finite.
+    """
+    vertices, faces, bounds = _pellicle.simplify(
+        core_of(context), arrays_of(mesh), float(tolerance), bool(one_sided)
+    )
+    return Simplified(vertices, faces, **bounds)

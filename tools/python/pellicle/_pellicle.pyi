@@ -133,3 +133,6 @@ def geodesic(context: Context, mesh: Mesh, source: int) -> npt.NDArray[np.float6
 def distance(
     context: Context, mesh: Mesh, other: Mesh
 ) -> tuple[npt.NDArray[np.float64], Fields]: ...
+def simplify(
+    context: Context, mesh: Mesh, tolerance: float, one_sided: bool
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32], Fields]: ...

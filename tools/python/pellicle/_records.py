@@ -379,6 +379,30 @@ class Distances:
     vertex_max: float
 
 
+@dataclass(frozen=True, eq=False)
+class Simplified:
+    """A mesh of fewer vertices, and how far it is from the mesh that it was made of.
+
+    Attributes
+    ----------
+    vertices : numpy.ndarray
+        (n, 3) float64.
+    faces : numpy.ndarray
+        (m, 3) uint32.
+    from_at_least, from_at_most : float
+        Between these is the largest distance from a place of the result to the mesh.
+    to_at_least, to_at_most : float
+        The same from a place of the mesh to the result.
+    """
+
+    vertices: npt.NDArray[np.float64]
+    faces: npt.NDArray[np.uint32]
+    from_at_least: float
+    from_at_most: float
+    to_at_least: float
+    to_at_most: float
+
+
 def check_of(fields: dict[str, Any]) -> Check:
     fields["measures"] = Measures(**fields["measures"])
     return Check(**fields)

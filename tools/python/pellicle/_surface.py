@@ -15,7 +15,7 @@ from . import _pellicle
 from ._context import Context, core_of
 from ._images import Frame, Vector, frame_of
 from ._mesh_files import save, settled_vertices
-from ._meshes import arrays_of, component_measures
+from ._meshes import arrays_of, component_measures, simplify
 from ._parameters import Parameters
 from ._picture import picture
 from ._records import (
@@ -261,6 +261,28 @@ class Surface:
     def components(self) -> list[ComponentMeasures]:
         """The measures of each component, the largest area first; walls of cavities are some."""
         return component_measures(self, context=self.context).each
+
+    def simplify(self, tolerance: float, *, one_sided: bool = False) -> Surface:
+        """A surface of fewer vertices within a distance of this one, which stays as it is.
+
+        Parameters
+        ----------
+        tolerance : float
+            In the space. No place of either surface is farther from the other one, but for the
+            rounding to float32 of voxels; `pellicle.simplify` tells the distances.
+        one_sided : bool
+            That places of this surface are near the new one is not asked for.
+
+        Raises
+        ------
+        InvalidData
+            Where rounding makes faces meet.
+        """
+        made = simplify(self, tolerance, one_sided=one_sided, context=self.context)
+        core = _pellicle.surface_create(
+            self._core.context, self._space, self._frame.core(), (made.vertices, made.faces)
+        )
+        return self._of(core, self._space, self._frame)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a mesh file, whose comment names the space; the same bytes as the command.

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <tuple>
 #include <vector>
 
 #include "tools/python/src/records.h"
@@ -12,6 +13,7 @@ namespace plc::python {
 namespace {
 
 using Values = py::array_t<double>;
+using Indices = py::array_t<uint32_t>;
 
 void check_rows(const py::array& array, const char* name) {
   if (array.ndim() != 2 || array.shape(1) != 3) {
@@ -104,6 +106,24 @@ std::pair<Values, py::dict> distance(Context& context, const MeshArrays& mesh,
   return {result, dict_of(record)};
 }
 
+std::tuple<Values, Indices, py::dict> simplify(Context& context, const MeshArrays& mesh,
+                                               double tolerance, bool one_sided) {
+  const MeshView view(mesh);
+  std::vector<double> xyz(3 * static_cast<size_t>(view.vertex_count));
+  std::vector<uint32_t> abc(3 * static_cast<size_t>(view.face_count));
+  plc_simplify_options options;
+  plc_simplify_options_defaults(&options);
+  options.tolerance = tolerance;
+  options.one_sided = one_sided ? 1 : 0;
+  auto record = unwritten<plc_simplified>();
+  context.call([&](plc_context* handle) {
+    return plc_mesh_simplify(handle, view.xyz, view.vertex_count, view.abc, view.face_count,
+                             &options, xyz.data(), abc.data(), &record);
+  });
+  return {Values({record.vertices, int64_t{3}}, xyz.data()),
+          Indices({record.faces, int64_t{3}}, abc.data()), dict_of(record)};
+}
+
 }  // namespace
 
 MeshView::MeshView(const MeshArrays& mesh)
@@ -122,6 +142,7 @@ void bind_meshes(py::module_& module) {
   module.def("nearest_vertex", &nearest_vertex);
   module.def("geodesic", &geodesic);
   module.def("distance", &distance);
+  module.def("simplify", &simplify);
 }
 
 }  // namespace plc::python

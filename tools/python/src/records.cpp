@@ -117,4 +117,9 @@ py::dict dict_of(const plc_distances& d) {
                   "vertex_mean"_a = d.vertex_mean, "vertex_max"_a = d.vertex_max);
 }
 
+py::dict dict_of(const plc_simplified& s) {
+  return py::dict("from_at_least"_a = s.from_at_least, "from_at_most"_a = s.from_at_most,
+                  "to_at_least"_a = s.to_at_least, "to_at_most"_a = s.to_at_most);
+}
+
 }  // namespace plc::python

@@ -18,6 +18,7 @@ py::dict dict_of(const plc_measures& measures);
 py::dict dict_of(const plc_check& check);
 py::dict dict_of(const plc_component_measures& measures);
 py::dict dict_of(const plc_distances& distances);
+py::dict dict_of(const plc_simplified& simplified);
 
 // For structs that the engine only writes.
 template <class Struct>

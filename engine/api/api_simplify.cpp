@@ -1,0 +1,117 @@
+// The C API: simplifying of any mesh.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "engine/api/handles.h"
+#include "engine/measure/hausdorff.h"
+#include "engine/measure/mesh_check.h"
+#include "engine/simplify/simplification.h"
+#include "pyramid/check_volume.h"
+
+namespace {
+
+// A tolerance is at least so many times what distances are rounded by, so that it can be proved.
+constexpr double kLeastTolerance = 100;
+// How small distances are told, against the tolerance.
+constexpr double kPrecise = 8;
+
+std::string count_of(int64_t count, const char* one, const char* many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+// What is wrong with a mesh that is not valid, the gravest thing alone.
+std::string fault_of(const plc::MeshCheck& c) {
+  if (c.measures.faces == 0) return "it has no face";
+  if (c.closed == 0) return count_of(c.border_edges, "edge has", "edges have") + " one face";
+  if (c.manifold == 0) {
+    return count_of(c.non_manifold_edges, "edge has", "edges have") + " more than two faces, " +
+           count_of(c.non_manifold_vertices, "vertex", "vertices") + " more than one umbrella";
+  }
+  if (c.oriented == 0) {
+    return "the faces of " + count_of(c.inconsistent_edges, "edge", "edges") + " run it one way";
+  }
+  if (c.degenerate_faces > 0) {
+    return count_of(c.degenerate_faces, "face has", "faces have") + " no area";
+  }
+  if (c.self_intersections > 0) {
+    return count_of(c.self_intersections, "pair", "pairs") + " of faces meet, the first " +
+           std::to_string(c.first_intersection[0]) + " and " +
+           std::to_string(c.first_intersection[1]);
+  }
+  return count_of(c.wrongly_oriented_components, "component faces", "components face") +
+         " the wrong way";
+}
+
+plc::Status demand_valid(const plc::MeshArrays& mesh, const plc::Executor& executor) {
+  plc::MeshCheck check;
+  plc::Status status = plc::check_mesh(mesh, executor, check);
+  if (!status.ok() || check.valid != 0) return status;
+  return {plc::ErrorCode::kInvalidData, "the mesh is not a valid surface: " + fault_of(check)};
+}
+
+}  // namespace
+
+extern "C" {
+
+plc_status plc_mesh_simplify(plc_context* context, const double* xyz, int64_t vertex_count,
+                             const uint32_t* abc, int64_t face_count,
+                             const plc_simplify_options* options, double* new_xyz,
+                             uint32_t* new_abc, plc_simplified* simplified) {
+  return plc::guarded(context, [&]() -> plc::Status {
+    plc_simplify_options o;
+    plc::Status status = plc::take_struct(options, plc_simplify_options_defaults, "options", o);
+    if (!status.ok()) return status;
+    if (!(o.tolerance > 0) || !std::isfinite(o.tolerance)) {
+      return plc::bad_argument("options: tolerance " + plc::number_text(o.tolerance) +
+                               ": must be a finite number > 0");
+    }
+    if (new_xyz == nullptr || new_abc == nullptr) {
+      return plc::bad_argument("new_xyz, new_abc: must not be NULL");
+    }
+    if (status = plc::check_output(simplified, "simplified"); !status.ok()) return status;
+    const plc::Executor& executor = context->host->schedule;
+    const plc::MeshArrays given = plc::mesh_arrays(xyz, vertex_count, abc, face_count);
+    status = demand_valid(given, executor);
+    if (!status.ok()) return status;
+    if (const double least = kLeastTolerance * plc::distance_rounding(given); o.tolerance < least) {
+      return plc::bad_argument("options: tolerance " + plc::number_text(o.tolerance) +
+                               ": distances in this mesh are rounded, at least " +
+                               plc::number_text(least) + " can be asked for");
+    }
+    plc::SimplifiedMesh result;
+    plc::SimplifyOptions how{o.tolerance, o.one_sided == 0, {}};
+    if (o.progress != nullptr) {
+      how.go_on = [&o](double fraction) { return o.progress(fraction, o.progress_user) == 0; };
+    }
+    status = plc::simplify(given, how, executor, result);
+    if (!status.ok()) return status;
+    const plc::MeshArrays made = plc::arrays_of(result.xyz, result.abc);
+    plc::MeshCheck check;
+    status = plc::check_mesh(made, executor, check);
+    if (!status.ok()) return status;
+    if (check.valid == 0) {
+      return {plc::ErrorCode::kInternal, "the simplified mesh is not valid: " + fault_of(check)};
+    }
+    const double precise = o.tolerance / kPrecise;
+    const plc::FarthestPlace from = plc::farthest_place(made, given, precise, executor);
+    const plc::FarthestPlace to = plc::farthest_place(given, made, precise, executor);
+    if (from.at_most > o.tolerance || (how.two_sided && to.at_most > o.tolerance)) {
+      return {plc::ErrorCode::kInternal,
+              "the simplified mesh is not proved to be within the tolerance"};
+    }
+    std::copy(result.xyz.begin(), result.xyz.end(), new_xyz);
+    std::copy(result.abc.begin(), result.abc.end(), new_abc);
+    const plc_simplified out{sizeof out,
+                             static_cast<int64_t>(made.vertex_count),
+                             static_cast<int64_t>(made.face_count),
+                             from.at_least,
+                             from.at_most,
+                             to.at_least,
+                             to.at_most};
+    plc::give_struct(out, simplified);
+    return {};
+  });
+}
+
+}  // extern "C"
