@@ -15,6 +15,6 @@ inline constexpr double kTimeStep = 1.5;       // dt
 inline constexpr double kMaxMove = 0.4;        // in delta
 inline constexpr double kEpsilon = 5e-6;       // of the energy at which a level has converged
 inline constexpr double kCalmSpeed = 0;        // the fastest vertex is not asked about
-inline constexpr int kMaxIterations = 500;     // of a level
+inline constexpr int kMaxIterations = 1000;    // of a level
 
 }  // namespace plc::defaults
