@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "engine/base/blocks.h"
 #include "engine/base/constants.h"
@@ -25,10 +26,10 @@ struct Limits {
 };
 
 // Brings calm, drift and turns of a block's vertices up to date. Returns those that wake their
-// neighbours, as bits. Loops over whole blocks without branches, which compilers make vector code
-// of.
+// neighbours, as bits; adds to `excess` how many more go outwards than inwards. Loops over whole
+// blocks without branches, which compilers make vector code of.
 uint32_t observe_block(Mesh& mesh, uint8_t* calm_for, uint8_t* drifted, uint32_t first,
-                       const Limits& limits) {
+                       const Limits& limits, int64_t& excess) {
   const Streams3 &move = mesh.displacement, &normal = mesh.normal;
   const float *dx = &move.x[first], *dy = &move.y[first], *dz = &move.z[first];
   const float *nx = &normal.x[first], *ny = &normal.y[first], *nz = &normal.z[first];
@@ -47,6 +48,10 @@ uint32_t observe_block(Mesh& mesh, uint8_t* calm_for, uint8_t* drifted, uint32_t
   }
   uint8_t* const turns = &mesh.turns[first];
   for (uint32_t k = 0; k < kRingLanes; ++k) turns[k] = moved_to_side(turns[k], side[k]);
+  int32_t outwards = 0;
+  for (uint32_t k = 0; k < kRingLanes; ++k) outwards += static_cast<int32_t>(side[k] & 1);
+  for (uint32_t k = 0; k < kRingLanes; ++k) outwards -= static_cast<int32_t>(side[k] >> 1);
+  excess += outwards;
   int32_t most = 0;
   for (uint32_t k = 0; k < kRingLanes; ++k) {
     calm_for[k] = static_cast<uint8_t>(calm[k] * std::min(calm_for[k] + 1, 255));
@@ -148,12 +153,15 @@ void Sleep::observe() {
   const float slide = kCalmSlide * along;
   const Limits limits{along, slide * slide, 256 / (kWakeMove * delta), speeds_.turn * delta};
   found_.resize(std::max(found_.size(), block_count(awake_.size(), kTaskBlocks)));
+  excess_.assign(block_count(awake_.size(), kTaskBlocks), 0);
   run_blocks(executor_, awake_.size(), kTaskBlocks, [&](size_t task, size_t begin, size_t end) {
     auto& wakers = found_[task];
     wakers.clear();
     for (size_t i = begin; i < end; ++i) {
       const uint32_t first = awake_[i] * kRingLanes;
-      uint32_t waking = observe_block(mesh_, &calm_[first], &drift_[first], first, limits);
+      uint32_t waking =
+          observe_block(mesh_, &calm_[first], &drift_[first], first, limits, excess_[task]);
+      if (travel_.going()) std::fill_n(&mesh_.turns[first], kRingLanes, uint8_t{0});
       for (; waking != 0; waking &= waking - 1) {
         wakers.push_back(first + static_cast<uint32_t>(std::countr_zero(waking)));
       }
@@ -168,18 +176,22 @@ void Sleep::observe() {
       }
     }
   });
+  travel_.observe(std::accumulate(excess_.begin(), excess_.end(), int64_t{0}),
+                  mesh_.vertex_count());
 }
 
 void Sleep::save(StateWriter& to) const {
   calm_.save(to);
   drift_.save(to);
   to.add_all(asleep_);
+  travel_.save(to);
 }
 
 void Sleep::restore(StateReader& from) {
   calm_.restore(from);
   drift_.restore(from);
   from.read_all(asleep_);
+  travel_.restore(from);
   from.demand(asleep_.size() <= mesh_.padded() / kRingLanes);
 }
 

@@ -21,6 +21,7 @@
 #include "engine/base/state_io.h"
 #include "engine/mesh/mesh.h"
 #include "engine/mesh/vertex_bytes.h"
+#include "engine/motion/travel.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
 
@@ -55,6 +56,8 @@ class Sleep {
   // displacements are those of the step.
   void observe();
   void wake_all() { calm_.fill(0); }
+  // The surface sets out on a way of at most so many iterations, on which turns do not count.
+  void travel(int most) { travel_.start(most); }
   const VertexBytes& calm() const { return calm_; }
   const VertexBytes& drift() const { return drift_; }
   // Ids have changed: everything that sleeps counts as fallen asleep just now.
@@ -76,6 +79,8 @@ class Sleep {
   Vector<uint32_t> awake_, fallen_, awake_and_rim_;
   Vector<uint8_t> asleep_, to_sleep_, touched_;  // by block
   std::vector<Vector<uint32_t>> found_;          // per task
+  Vector<int64_t> excess_;                       // per task
+  Travel travel_;
 };
 
 }  // namespace plc

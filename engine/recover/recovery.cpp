@@ -118,6 +118,8 @@ Status Recovery::start_level() {
   if (!fresh) {
     if (Status s = add_late_bubbles(added); !s.ok()) return s;
   }
+  // What is frozen halfway on a coarse level goes on with the next one.
+  evolution_.travel(fresh && level_ == 0 ? iterations_across() : 0);
   late_iterations_ = 0;
   start_round(0, false);
   return {};
@@ -253,6 +255,17 @@ void Recovery::start_round(int number, bool late) {
 
 int Recovery::iterations_left() const {
   return spec_.max_iterations - (round_.late ? late_iterations_ : round_.iteration);
+}
+
+// How many iterations a vertex takes through the image, from corner to corner.
+int Recovery::iterations_across() const {
+  double squared = 0;
+  for (size_t a = 0; a < 3; ++a) {
+    const double side = static_cast<double>(pyramid_.levels[0].dims[a]) * space_.step[a];
+    squared += side * side;
+  }
+  const double move = static_cast<double>(spec_.model.max_move) * mesh_.delta;
+  return static_cast<int>(std::min(std::sqrt(squared) / move, 1e9));
 }
 
 Status Recovery::iterate() {

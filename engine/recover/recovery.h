@@ -157,6 +157,7 @@ class Recovery {
   Status adapt();
   void start_round(int number, bool late);
   int iterations_left() const;  // of the round
+  int iterations_across() const;
   Status iterate();
   void count_frozen();
   void check();

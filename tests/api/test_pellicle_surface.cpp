@@ -189,9 +189,9 @@ TEST_CASE("small voxels far away are told in doubles, where floats of them meet"
 TEST_CASE("where a surface was frozen is told, in every space", "[pellicle]") {
   const Context context = samples::make_context();
   samples::Volume volume = samples::noise(samples::empty_volume({26, 26, 26}), 3, 1);
-  samples::add_noise(volume, 0.1, 2);
+  samples::add_noise(volume, 0.2, 2);
   const plc_image image = samples::image_of(volume);
-  const Surface noisy = samples::extract(context.get(), image, samples::parameters(0.5, 0));
+  const Surface noisy = samples::extract(context.get(), image, samples::parameters(0.5, 1));
   int64_t count = 0;
   REQUIRE(plc_surface_frozen_sites(context.get(), noisy.get(), PLC_SPACE_LPS, nullptr, nullptr, 0,
                                    &count) == PLC_OK);
@@ -207,7 +207,7 @@ TEST_CASE("where a surface was frozen is told, in every space", "[pellicle]") {
   const auto voxels = places(PLC_SPACE_VOXEL, vertices), lps = places(PLC_SPACE_LPS, again);
   CHECK(vertices == again);
   CHECK(std::is_sorted(vertices.rbegin(), vertices.rend()));
-  const plc_level_report level = samples::level_of(noisy.get(), 0);
+  const plc_level_report level = samples::level_of(noisy.get(), 1);
   CHECK(level.frozen_sites == count);
   CHECK(level.frozen_vertices == std::accumulate(vertices.begin(), vertices.end(), int64_t{0}));
   for (size_t i = 0; i < voxels.size(); i += 3) {

@@ -124,6 +124,37 @@ TEST_CASE("every level of a noisy image comes to rest, far from the most iterati
   CHECK(frozen > 0);
 }
 
+TEST_CASE("a surface has arrived when it goes to both sides, or had the time to cross the image",
+          "[turns]") {
+  plc::Travel travel;
+  CHECK_FALSE(travel.going());
+  travel.start(1000);
+  int iterations = 0;
+  for (; iterations < 50; ++iterations) travel.observe(-90, 100);
+  CHECK(travel.going());
+  for (; travel.going(); ++iterations) travel.observe(iterations % 2 == 0 ? 3 : -3, 100);
+  CHECK(iterations > 60);
+  CHECK(iterations < 100);
+  travel.observe(100, 100);
+  CHECK_FALSE(travel.going());
+  travel.start(30);
+  for (iterations = 0; travel.going(); ++iterations) travel.observe(100, 100);
+  CHECK(iterations == 30);
+}
+
+TEST_CASE("a front that sweeps through noise leaves nothing behind", "[turns]") {
+  samples::Volume volume = samples::sampled(
+      samples::empty_volume({56, 56, 56}),
+      [](const samples::Point& p) { return samples::norm(p[0], p[1], p[2]) < 10 ? 1.0 : 0.0; });
+  samples::add_noise(volume, 0.9, 3);
+  const Recovered r = samples::recover(samples::make_run("ball", std::move(volume), 0.5, 0));
+  REQUIRE(r.status.ok());
+  // Counted from the start, turns freeze 275 vertices outside of the ball, and 1,039 are left.
+  CHECK(r.records.back().converged);
+  CHECK(r.records.back().frozen_vertices < 20);
+  CHECK(r.mesh.vertex_count() < 850);
+}
+
 TEST_CASE("nothing freezes where nothing goes round in circles", "[turns]") {
   const Recovered r = samples::recover(samples::make_run(
       "ball", samples::sphere_potential(samples::empty_volume({40, 40, 40}), 0.35), 0.5, 1));
