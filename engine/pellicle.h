@@ -849,9 +849,10 @@ PLC_API void plc_simplified_defaults(plc_simplified* simplified);
 /* A mesh of fewer vertices, no place of which is farther than the tolerance from the given one nor,
  * unless one_sided, a place of that from it: both Hausdorff distances, proved. The mesh must be
  * valid (plc_check_mesh), else PLC_INVALID_DATA; so is the result, exactly, with the same
- * components, genus and orientation. The tolerance must be at least 1e-12 of the largest coordinate.
- * Where all coordinates are floats, so are those of the result. Edges are collapsed, those of the
- * least quadric error (Garland and Heckbert, 1997) first, until none is left that could be.
+ * components, genus and orientation. The tolerance must be at least 1e-12 of the largest
+ * coordinate. Where all coordinates are floats, so are those of the result. Edges are collapsed,
+ * those of the least quadric error (Garland and Heckbert, 1997) first, until none is left that
+ * could be.
  *
  * new_xyz: room for 3 * vertex_count values; new_abc: for 3 * face_count indices; they must not
  * overlap the mesh. What is written to them are simplified->vertices and ->faces. struct_size of
