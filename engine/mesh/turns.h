@@ -13,7 +13,7 @@
 // they are merged. That is beta_gradI, and in a stretched metric every movement along the normals
 // of the metric. --max-iterations ends that.
 //
-// Of a surface that starts on I_0 turns do not count before it has come to what it approaches, see
+// Of bubbles that start on I_0 turns do not count before they have come to what they approach, see
 // motion/travel.h.
 //
 // What has turned kFreeTurns times is not cut any more, and what is frozen not joined

@@ -118,8 +118,11 @@ Status Recovery::start_level() {
   if (!fresh) {
     if (Status s = add_late_bubbles(added); !s.ok()) return s;
   }
-  // What is frozen halfway on a coarse level goes on with the next one.
-  evolution_.travel(fresh && level_ == 0 ? iterations_across() : 0);
+  // Other starts are near what they approach. What is frozen halfway on a coarse level goes on with
+  // the next one.
+  const Init init = spec_.start.init;
+  const bool bubbles = init == Init::kBubble || init == Init::kBubbles || init == Init::kSeeds;
+  evolution_.travel(fresh && bubbles && level_ == 0 ? iterations_across() : 0);
   late_iterations_ = 0;
   start_round(0, false);
   return {};
