@@ -132,7 +132,7 @@ TEST_CASE("a surface has arrived when it goes to both sides, or had the time to 
   int iterations = 0;
   for (; iterations < 50; ++iterations) travel.observe(-90, 100);
   CHECK(travel.going());
-  for (; travel.going(); ++iterations) travel.observe(iterations % 2 == 0 ? 3 : -3, 100);
+  for (; travel.going(); ++iterations) travel.observe(iterations % 2 == 0 ? 30 : -30, 100);
   CHECK(iterations > 60);
   CHECK(iterations < 100);
   travel.observe(100, 100);
