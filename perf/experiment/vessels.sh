@@ -9,7 +9,7 @@ extract late "$angio" "${vessels[@]}"
 overview "20, table 2" \
   "Coarse to fine in 17 min, direct in 48 min; coarse to fine keeps one component and loses several small ones; volumes 3.7 % apart." \
   "Coarse to fine: $(iterations fine) iterations, $(shape fine), $(number fine '.seconds.evolution | round') s. Direct: $(iterations direct), $(shape direct), $(number direct '.seconds.evolution | round') s. Volume of coarse to fine off by $(percent fine direct volume), with late bubbles ($(shape late), $(number late '.seconds.evolution | round') s) by $(percent late direct volume)." \
-  "A phantom (256 x 256 x 124, four trees, noise), not a scan. Its tubes are thin everywhere, so that less of them is left on coarse levels and the volumes are further apart; late bubbles find the lost ones again. Where tubes are about as thin as the mesh resolves some vertices never rest (the star), and the direct approach leaves crumbs of broken tubes."
+  "A phantom (256 x 256 x 124, four trees, noise), not a scan. Its tubes are thin everywhere, so that less of them is left on coarse levels and the volumes are further apart; late bubbles find the lost ones again. Where tubes are about as thin as the mesh resolves, the direct approach leaves crumbs of broken tubes."
 table "direct=direct" "fine=coarse to fine" "late=coarse to fine, late bubbles"
 times "direct=direct" "fine=coarse to fine" "late=coarse to fine, late bubbles"
 say <<END
