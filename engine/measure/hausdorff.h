@@ -1,6 +1,6 @@
 // How far a mesh is from another one at most: proved, not sampled.
 #pragma once
-#include "engine/measure/surface_distance.h"
+#include "engine/base/mesh_arrays.h"
 #include "pyramid/executor.h"
 
 namespace plc {

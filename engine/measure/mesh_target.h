@@ -1,10 +1,10 @@
-// A mesh that stays as it is, as covers (cover.h) and searches for the nearest face take it.
+// A mesh that stays as it is, for searches of the nearest face and as covers (cover.h) take it.
 #pragma once
 #include <numeric>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/exact/face_tree.h"
 #include "engine/measure/cover.h"
-#include "engine/measure/surface_distance.h"
 #include "pyramid/memory.h"
 
 namespace plc {

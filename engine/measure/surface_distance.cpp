@@ -7,8 +7,7 @@
 
 #include "engine/base/blocks.h"
 #include "engine/base/double3.h"
-#include "engine/exact/face_tree.h"
-#include "engine/measure/point_triangle.h"
+#include "engine/measure/mesh_target.h"
 #include "pyramid/memory.h"
 
 namespace plc {
@@ -16,29 +15,12 @@ namespace {
 
 constexpr size_t kBlock = 512;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The distance to the nearest point of a mesh's faces.
-class NearestFace {
- public:
-  NearestFace(const MeshArrays& mesh, const Executor& executor) : mesh_(mesh) {
-    Vector<uint32_t> ids(mesh.face_count);
-    std::iota(ids.begin(), ids.end(), 0U);
-    tree_.build(mesh.xyz, mesh.abc, ids.data(), ids.size(), executor);
-  }
-  double distance(const double* p) const {
-    const double squared =
-        tree_.nearest({p[0], p[1], p[2]}, std::numeric_limits<double>::infinity(), [&](uint32_t f) {
-          const size_t c = 3 * static_cast<size_t>(f);
-          return squared_distance_to_triangle(p, mesh_.corner(c), mesh_.corner(c + 1),
-                                              mesh_.corner(c + 2));
-        });
-    return std::sqrt(squared);
-  }
-
- private:
-  MeshArrays mesh_;
-  FaceTree tree_;
-};
+double distance_to(const MeshTarget& other, const double* p) {
+  uint32_t face = kNoFace;
+  return std::sqrt(other.nearest_within({p[0], p[1], p[2]}, kInfinity, face));
+}
 
 // Integrals over faces.
 struct Sums {
@@ -52,7 +34,7 @@ struct Sums {
 };
 
 // The rule of seven points that is exact for cubics: corners 1/20, middles 2/15, centre 9/20.
-Sums face_sums(const NearestFace& other, const double* const (&p)[3], const double (&corner)[3]) {
+Sums face_sums(const MeshTarget& other, const double* const (&p)[3], const double (&corner)[3]) {
   Sums sums;
   sums.area = length(cross(difference(p[1], p[0]), difference(p[2], p[0]))) / 2;
   const auto add = [&](double weight, double d) {
@@ -62,19 +44,19 @@ Sums face_sums(const NearestFace& other, const double* const (&p)[3], const doub
   };
   double centre[3];
   for (size_t k = 0; k < 3; ++k) centre[k] = (p[0][k] + p[1][k] + p[2][k]) / 3;
-  add(9.0 / 20, other.distance(centre));
+  add(9.0 / 20, distance_to(other, centre));
   for (size_t i = 0; i < 3; ++i) {
     add(1.0 / 20, corner[i]);
     const double *a = p[i], *b = p[(i + 1) % 3];
     const double middle[3] = {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
-    add(2.0 / 15, other.distance(middle));
+    add(2.0 / 15, distance_to(other, middle));
   }
   sums.distance *= sums.area;
   sums.squared *= sums.area;
   return sums;
 }
 
-Sums surface_sums(const MeshArrays& mesh, const NearestFace& other, const double* at_vertices,
+Sums surface_sums(const MeshArrays& mesh, const MeshTarget& other, const double* at_vertices,
                   const Executor& executor) {
   Vector<Sums> parts(block_count(mesh.face_count, kBlock));
   run_blocks(executor, mesh.face_count, kBlock, [&](size_t block, size_t begin, size_t end) {
@@ -97,12 +79,12 @@ Sums surface_sums(const MeshArrays& mesh, const NearestFace& other, const double
 
 SurfaceDistances surface_distances(const MeshArrays& mesh, const MeshArrays& other,
                                    const Executor& executor, double* distance) {
-  const NearestFace nearest(other, executor);
+  const MeshTarget target(other, executor);
   Vector<double> at(mesh.vertex_count);
   run_blocks(executor, mesh.vertex_count, kBlock, [&](size_t, size_t begin, size_t end) {
-    for (size_t v = begin; v < end; ++v) at[v] = nearest.distance(mesh.point(v));
+    for (size_t v = begin; v < end; ++v) at[v] = distance_to(target, mesh.point(v));
   });
-  const Sums sums = surface_sums(mesh, nearest, at.data(), executor);
+  const Sums sums = surface_sums(mesh, target, at.data(), executor);
   SurfaceDistances d{kNan, kNan, kNan, kNan, kNan};
   if (mesh.vertex_count > 0) {
     d.vertex_mean =

@@ -56,6 +56,11 @@ inline uint8_t moved_to_side(uint8_t state, uint32_t side) {
   return static_cast<uint8_t>(std::min(turns_of(state) + turn, kFrozenTurns) |
                               (side == 0 ? last : side) << kSideShift);
 }
+// Of the last movement: 1 outwards, -1 inwards, 0 none.
+inline int outwards_of(uint8_t state) {
+  const uint32_t side = uint32_t{state} >> kSideShift;
+  return static_cast<int>(side & 1) - static_cast<int>(side >> 1);
+}
 // The state of a new vertex between two others.
 inline uint8_t turns_between(uint8_t a, uint8_t b) {
   return with_turns(0, (turns_of(a) + turns_of(b) + 1) / 2);

@@ -26,10 +26,10 @@ struct Limits {
 };
 
 // Brings calm, drift and turns of a block's vertices up to date. Returns those that wake their
-// neighbours, as bits; adds to `excess` how many more go outwards than inwards. Loops over whole
-// blocks without branches, which compilers make vector code of.
+// neighbours, as bits. Loops over whole blocks without branches, which compilers make vector code
+// of.
 uint32_t observe_block(Mesh& mesh, uint8_t* calm_for, uint8_t* drifted, uint32_t first,
-                       const Limits& limits, int64_t& excess) {
+                       const Limits& limits) {
   const Streams3 &move = mesh.displacement, &normal = mesh.normal;
   const float *dx = &move.x[first], *dy = &move.y[first], *dz = &move.z[first];
   const float *nx = &normal.x[first], *ny = &normal.y[first], *nz = &normal.z[first];
@@ -48,10 +48,6 @@ uint32_t observe_block(Mesh& mesh, uint8_t* calm_for, uint8_t* drifted, uint32_t
   }
   uint8_t* const turns = &mesh.turns[first];
   for (uint32_t k = 0; k < kRingLanes; ++k) turns[k] = moved_to_side(turns[k], side[k]);
-  int32_t outwards = 0;
-  for (uint32_t k = 0; k < kRingLanes; ++k) outwards += static_cast<int32_t>(side[k] & 1);
-  for (uint32_t k = 0; k < kRingLanes; ++k) outwards -= static_cast<int32_t>(side[k] >> 1);
-  excess += outwards;
   int32_t most = 0;
   for (uint32_t k = 0; k < kRingLanes; ++k) {
     calm_for[k] = static_cast<uint8_t>(calm[k] * std::min(calm_for[k] + 1, 255));
@@ -65,6 +61,15 @@ uint32_t observe_block(Mesh& mesh, uint8_t* calm_for, uint8_t* drifted, uint32_t
   if (most < 256) return 0;
   for (uint32_t k = 0; k < kRingLanes; ++k) wakers |= static_cast<uint32_t>(drift[k] >= 256) << k;
   return wakers;
+}
+
+// Forgets the turns of a block's vertices, which have none from before this iteration. Returns how
+// many more of them have gone outwards than inwards.
+int64_t forget_turns(uint8_t* turns) {
+  int64_t excess = 0;
+  for (uint32_t k = 0; k < kRingLanes; ++k) excess += outwards_of(turns[k]);
+  std::fill_n(turns, kRingLanes, uint8_t{0});
+  return excess;
 }
 
 }  // namespace
@@ -159,9 +164,8 @@ void Sleep::observe() {
     wakers.clear();
     for (size_t i = begin; i < end; ++i) {
       const uint32_t first = awake_[i] * kRingLanes;
-      uint32_t waking =
-          observe_block(mesh_, &calm_[first], &drift_[first], first, limits, excess_[task]);
-      if (travel_.going()) std::fill_n(&mesh_.turns[first], kRingLanes, uint8_t{0});
+      uint32_t waking = observe_block(mesh_, &calm_[first], &drift_[first], first, limits);
+      if (travel_.going()) excess_[task] += forget_turns(&mesh_.turns[first]);
       for (; waking != 0; waking &= waking - 1) {
         wakers.push_back(first + static_cast<uint32_t>(std::countr_zero(waking)));
       }
@@ -176,8 +180,10 @@ void Sleep::observe() {
       }
     }
   });
-  travel_.observe(std::accumulate(excess_.begin(), excess_.end(), int64_t{0}),
-                  mesh_.vertex_count());
+  if (travel_.going()) {
+    travel_.observe(std::accumulate(excess_.begin(), excess_.end(), int64_t{0}),
+                    mesh_.vertex_count());
+  }
 }
 
 void Sleep::save(StateWriter& to) const {

@@ -26,9 +26,9 @@ class Travel {
     share_ = 0;
   }
   bool going() const { return left_ > 0; }
-  // An iteration, after which so many more of the vertices had gone outwards than inwards.
+  // While it is going: an iteration, in which so many more of the vertices went outwards than
+  // inwards.
   void observe(int64_t excess, uint32_t vertices) {
-    if (left_ == 0) return;
     const double share = vertices == 0 ? 0 : static_cast<double>(excess) / vertices;
     share_ += (share - share_) / kTravelMemory;
     ++gone_;

@@ -10,8 +10,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/measure/cover.h"
-#include "engine/measure/surface_distance.h"
 #include "engine/measure/vertex_corners.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "engine/measure/surface_distance.h"
+#include "engine/base/mesh_arrays.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
 #include "pyramid/status.h"

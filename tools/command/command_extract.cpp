@@ -1,6 +1,5 @@
 #include "tools/command/command_extract.h"
 
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -9,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/command/clock.h"
 #include "tools/command/command_labels.h"
 #include "tools/command/engine_handles.h"
 #include "tools/command/extract_inputs.h"
@@ -27,11 +27,6 @@
 namespace plc::tools {
 
 namespace {
-
-double now() {
-  using Clock = std::chrono::steady_clock;
-  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
-}
 
 struct Watch {
   ProgressLine& line;

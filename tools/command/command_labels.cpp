@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/command/clock.h"
 #include "tools/command/engine_handles.h"
 #include "tools/command/extract_job.h"
 #include "tools/command/label_files.h"
@@ -35,11 +35,6 @@ constexpr size_t kNamed = 10;
 constexpr double kInside = 255;  // of crop_label()
 
 constexpr double kReach = 2;  // voxels, more than a surface grows by
-double now() {
-  using Clock = std::chrono::steady_clock;
-  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
-}
-
 using Piece = LabelPiece;
 
 // What to try next where a piece overlaps another. False: nothing is left.

@@ -1,12 +1,12 @@
 #include "tools/command/command_simplify.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 
 #include "engine/pellicle.h"
+#include "tools/command/clock.h"
 #include "tools/command/engine_handles.h"
 #include "tools/command/mesh_precision.h"
 #include "tools/command/option_values.h"
@@ -18,20 +18,16 @@ namespace plc::tools {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 struct Telling {
   ProgressLine line;
-  Clock::time_point start = Clock::now();
-
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start).count(); }
+  double start = now();
 };
 
 int on_progress(double fraction, void* user) {
   auto& telling = *static_cast<Telling*>(user);
   char text[48];
   std::snprintf(text, sizeof text, "simplified: %.0f %%", 100 * fraction);
-  telling.line.update(text, fraction, telling.seconds());
+  telling.line.update(text, fraction, now() - telling.start);
   return 0;
 }
 

@@ -1,11 +1,11 @@
 #include "tools/command/label_files.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cinttypes>
 #include <cstdio>
 #include <utility>
 
+#include "tools/command/clock.h"
 #include "tools/command/extract_job.h"
 #include "tools/command/mesh_precision.h"
 #include "tools/command/report.h"
@@ -19,11 +19,6 @@ namespace {
 
 // Files that are renamed together, so that the disk is not waited for at each.
 constexpr size_t kTogether = 64;
-
-double now() {
-  using Clock = std::chrono::steady_clock;
-  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
-}
 
 std::array<uint8_t, 3> rgb_of(const LabelPiece& piece) {
   return piece.entry.rgb ? *piece.entry.rgb : label_bytes(piece.label.value);
