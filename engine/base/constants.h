@@ -91,8 +91,9 @@ inline constexpr uint32_t kSwingingTurns = 10;
 inline constexpr double kTurnSpeed = 2;
 inline constexpr uint32_t kTransformationTurns = 3;
 // A surface has arrived (motion/travel.h) when so much less than this share of its vertices goes to
-// one side than to the other, over about so many iterations. At 0.01 and 0.05 the same direct runs
-// end with the same number of components and handles, within 10 %.
+// one side than to the other, over about so many iterations. At 0.05 direct runs of a phantom of
+// vessels and of a head CT end with 55 and 8 components, 22 and 58 handles; at 0.01 with 59 and 8,
+// 24 and 59, after a few more iterations.
 inline constexpr double kArrived = 0.05;
 inline constexpr double kTravelMemory = 8;
 
