@@ -6,6 +6,7 @@
  *
  *   plc_extract                                            an image to a surface, in one call
  *   plc_volume_create, plc_pyramid_create, plc_run_create  the same in steps of any size
+ *   plc_volume_create_bricks                               an image that memory does not hold
  *
  * Errors: every function that can fail returns a plc_status; plc_context_message() then says in
  * one line what was wrong. No function exits, prints, throws, or changes the locale or signals. All
@@ -205,9 +206,62 @@ PLC_API void plc_volume_destroy(plc_volume* volume);
 /* Smallest and largest voxel; PLC_INVALID_DATA where some are NaN or infinite. */
 PLC_API plc_status plc_volume_range(plc_context* context, const plc_volume* volume, double* low,
                                     double* high);
-/* The image as the volume holds it: voxels live as long as the volume, strides are 0. */
+/* The image as the volume holds it: voxels live as long as the volume, strides are 0. Of bricks
+ * voxels is NULL. */
 PLC_API plc_status plc_volume_image(plc_context* context, const plc_volume* volume,
                                     plc_image* image);
+
+/* ---- images larger than memory ---------------------------------------------------------- */
+
+/* Fetches a brick: voxels[(z * brick[1] + y) * brick[0] + x], in the type of plc_bricks, is the
+ * voxel (at[0] * brick[0] + x, at[1] * brick[1] + y, at[2] * brick[2] + z) of the image; those
+ * beyond the image need not be written. Called on any thread of the context, on several at a time,
+ * never twice at a time for the same brick, and again for bricks that were dropped since: it must
+ * then give the same. It must not use handles of the context. Returns 0, or anything else where the
+ * brick cannot be had: the call that needed it then fails with PLC_INVALID_DATA and `message`, one
+ * line, of which there is room for `size` bytes. */
+typedef int (*plc_brick_fn)(const int64_t at[3], void* voxels, char* message, size_t size,
+                            void* user);
+
+/* An image by bricks. Its fetch and user must outlive the volume and what is made of it. */
+typedef struct plc_bricks {
+  size_t struct_size;
+  plc_voxel_type type; /* not PLC_I32 */
+  int64_t dims[3];     /* voxels, each >= 2 */
+  int64_t brick[3];    /* voxels of a brick; 16 .. 4096 on every axis, 2^26 in all: 32 to
+                          128 on every axis are best */
+  double spacing[3];   /* these three as in plc_image */
+  double origin[3];
+  double direction[9];
+  plc_brick_fn fetch;
+  void* user;
+  int64_t cache; /* bytes that bricks may take; 0: half of the context's memory_limit, or 1 GiB
+                    where that is 0 */
+} plc_bricks;
+/* Spacing 1, origin 0, identity direction, bricks of 64 voxels, no dims, nothing to fetch. */
+PLC_API void plc_bricks_defaults(plc_bricks* bricks);
+
+/* A volume of which only some bricks are in memory, those that were read lately. A pyramid reads
+ * all of them some times in order, a run those near the surface and, where it looks for late
+ * bubbles, all again; bricks of one value take no memory. Levels above I_0 that do not fit into
+ * `cache` together are made by bricks, too. The same bits as of the image in memory.
+ *
+ * Where the context has a memory_limit, bricks make room for everything else, but for a layer of
+ * them and a quarter: PLC_OUT_OF_MEMORY where those would take more than half of the limit. Not of
+ * such volumes: PLC_FEATURE_GRADIENT_NORM. PLC_INVALID_DATA as plc_volume_create. */
+PLC_API plc_status plc_volume_create_bricks(plc_context* context, const plc_bricks* bricks,
+                                            plc_volume** volume);
+
+typedef struct plc_brick_counts {
+  size_t struct_size;
+  int64_t bricks;     /* of the image */
+  int64_t read;       /* how many were fetched */
+  int64_t read_again; /* of them, those that had been fetched before */
+} plc_brick_counts;
+PLC_API void plc_brick_counts_defaults(plc_brick_counts* counts);
+/* PLC_INVALID_ARGUMENT where it is no volume of bricks. struct_size must be set. */
+PLC_API plc_status plc_volume_brick_counts(plc_context* context, const plc_volume* volume,
+                                           plc_brick_counts* counts);
 
 /* ---- parameters ------------------------------------------------------------------------- */
 
@@ -471,6 +525,10 @@ PLC_API void plc_extras_defaults(plc_extras* extras);
 PLC_API plc_status plc_extract(plc_context* context, const plc_image* image,
                                const plc_parameters* parameters, const plc_extras* extras,
                                plc_surface** surface);
+/* The same of a volume, of bricks or not. */
+PLC_API plc_status plc_extract_volume(plc_context* context, const plc_volume* volume,
+                                      const plc_parameters* parameters, const plc_extras* extras,
+                                      plc_surface** surface);
 
 /* The images I_0 .. I_levels of 4.2, normalised by the window, in the reduction, and the iso-values
  * pi_I on them. Reads of the parameters all up to `reduction`, and derives what they leave open.

@@ -86,6 +86,12 @@ inline void fill(plc_simplify_options& s) {
 inline void fill(plc_simplified& s) {
   plc_simplified_defaults(&s);
 }
+inline void fill(plc_bricks& s) {
+  plc_bricks_defaults(&s);
+}
+inline void fill(plc_brick_counts& s) {
+  plc_brick_counts_defaults(&s);
+}
 
 template <auto destroy>
 struct Destroy {
@@ -161,7 +167,20 @@ class Volume {
     handle_.reset(made);
   }
 
+  // Of bricks; bricks.fetch and bricks.user must outlive all that is made of the volume.
+  Volume(const Context& context, const plc_bricks& bricks) : context_(context.shared()) {
+    plc_volume* made = nullptr;
+    detail::demand(context_, plc_volume_create_bricks(context_.get(), &bricks, &made));
+    handle_.reset(made);
+  }
+
   plc_volume* get() const noexcept { return handle_.get(); }
+  // Of a volume of bricks.
+  plc_brick_counts brick_counts() const {
+    auto counts = defaults<plc_brick_counts>();
+    detail::demand(context_, plc_volume_brick_counts(context_.get(), get(), &counts));
+    return counts;
+  }
   Range range() const {
     Range r;
     detail::demand(context_, plc_volume_range(context_.get(), get(), &r.low, &r.high));
@@ -334,6 +353,13 @@ inline Surface extract(const Context& context, const plc_image& image,
                        const plc_parameters& parameters, const plc_extras* extras = nullptr) {
   plc_surface* made = nullptr;
   context.demand(plc_extract(context.get(), &image, &parameters, extras, &made));
+  return {context, made};
+}
+
+inline Surface extract(const Context& context, const Volume& volume,
+                       const plc_parameters& parameters, const plc_extras* extras = nullptr) {
+  plc_surface* made = nullptr;
+  context.demand(plc_extract_volume(context.get(), volume.get(), &parameters, extras, &made));
   return {context, made};
 }
 

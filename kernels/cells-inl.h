@@ -59,8 +59,8 @@ HWY_INLINE Place locate(const GradientView& image, const Floats3& p) {
 // Where the lanes' cells lie among the stored voxels of an image.
 struct Stored {
   size_t row, plane;  // steps to the next row and plane
-  // Whether all eight voxels of every lane's cell are stored, and 32 bits hold their numbers; else
-  // `first` lies.
+  // Whether all eight voxels of every lane's cell are stored, not in bricks, and 32 bits hold their
+  // numbers; else `first` lies.
   bool all;
   alignas(64) uint32_t first[kLanes];  // the first voxel of each lane's cell
 };
@@ -85,7 +85,7 @@ HWY_INLINE Stored stored(const ImageView& image, const Cells& x, const Cells& y,
       return hn::And(hn::Gt(index, hn::Set(di, -1)), hn::Gt(hn::Set(di, dim - 2 * pad - 1), index));
     };
     constexpr int64_t kMost = int64_t{1} << 32;  // of unsigned numbers
-    all = plane * (image.dims[2] - 2 * pad) <= kMost &&
+    all = image.bricks == nullptr && plane * (image.dims[2] - 2 * pad) <= kMost &&
           hn::AllTrue(di, hn::And(hn::And(within(i, image.dims[0]), within(j, image.dims[1])),
                                   within(k, image.dims[2])));
   }

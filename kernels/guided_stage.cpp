@@ -236,17 +236,20 @@ HWY_EXPORT(sized_iso_force);
 
 void guided_stage(SimdTarget simd, int stage, const Rk4Coefficients& coefficients,
                   const SurfaceForces& forces, const Rk4Streams& streams, const Blocks& blocks) {
+  const BrickReads reads(forces.image.bricks);
   PLC_DISPATCH(simd, guided_stage)(stage, coefficients, forces, streams, blocks);
 }
 
 Movement guided_move(SimdTarget simd, const Rk4Coefficients& coefficients,
                      const SurfaceForces& forces, const Rk4Streams& streams, const MoveBound& bound,
                      const MoveStreams& ends, const Blocks& blocks) {
+  const BrickReads reads(forces.image.bricks);
   return PLC_DISPATCH(simd, guided_move)(coefficients, forces, streams, bound, ends, blocks);
 }
 
 void sized_iso_force(SimdTarget simd, const SurfaceForces& forces, const Float4* sizes,
                      uint32_t begin, uint32_t end, Float3s force) {
+  const BrickReads reads(forces.image.bricks);
   PLC_DISPATCH(simd, sized_iso_force)(forces, sizes, begin, end, force);
 }
 

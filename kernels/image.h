@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 
+#include "kernels/bricks.h"
 #include "kernels/ring.h"
 #include "kernels/voxels.h"
 
@@ -37,6 +38,8 @@ struct ImageView {
   float scale[3] = {1, 1, 1};
   float offset[3] = {0, 0, 0};
   VoxelForm form{};
+  const Bricks* bricks =
+      nullptr;  // where the voxels are, of another type than kUnit, if data is null
 };
 
 // body(voxel): once, with a value of the type that the voxels of `type` have. The choice is made

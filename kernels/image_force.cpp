@@ -57,11 +57,13 @@ HWY_EXPORT(iso_force);
 
 void sample_trilinear(SimdTarget simd, const ImageView& image, const Float4* position,
                       uint32_t begin, uint32_t end, float* values) {
+  const BrickReads reads(image.bricks);
   PLC_DISPATCH(simd, sample_trilinear)(image, position, begin, end, values);
 }
 
 void iso_force(SimdTarget simd, const ImageView& image, const Float4* position, ConstFloat3s normal,
                const IsoPull& pull, uint32_t begin, uint32_t end, Float3s force) {
+  const BrickReads reads(image.bricks);
   PLC_DISPATCH(simd, iso_force)
   (image, position, normal, pull, begin, end, force);
 }

@@ -44,18 +44,16 @@ HWY_INLINE void stored_values(const VoxelForm& form, const Voxel* voxels, size_t
 
 void image_rows(const ImageView& image, int64_t z, int64_t first, int64_t end, float* values) {
   const auto width = static_cast<size_t>(image.dims[0]);
-  const auto pad = static_cast<size_t>(image.form.pad);
-  const float border = image.form.pad_value;
+  const BrickReads reads(image.bricks);
   with_voxel_type(image.form.type, [&](auto voxel) HWY_ATTR {
     for (int64_t y = first; y < end; ++y, values += width) {
-      const auto* row = stored_row<decltype(voxel)>(image, y, z);
-      if (row == nullptr) {
-        std::fill_n(values, width, border);
-        continue;
-      }
-      std::fill_n(values, pad, border);
-      stored_values(image.form, row, width - 2 * pad, values + pad);
-      std::fill_n(values + (width - pad), pad, border);
+      using Voxel = decltype(voxel);
+      fill_padding(image, y, z, 0, image.dims[0], values);
+      visit_stored<Voxel>(image, y, z, 0, image.dims[0],
+                          [&](const Voxel* voxels, int64_t x, int64_t count) HWY_ATTR {
+                            stored_values(image.form, voxels, static_cast<size_t>(count),
+                                          values + x);
+                          });
     }
   });
 }

@@ -22,7 +22,8 @@ inline float voxel_value(const VoxelForm& form, Voxel voxel) {
   }
 }
 
-// The first stored voxel of row (y, z), counted in the image; null where the row is padding.
+// The first stored voxel of row (y, z), counted in the image; null where the row is padding. Not of
+// bricks.
 template <class Voxel>
 inline const Voxel* stored_row(const ImageView& image, int64_t y, int64_t z) {
   const int64_t pad = image.form.pad;
@@ -32,9 +33,28 @@ inline const Voxel* stored_row(const ImageView& image, int64_t y, int64_t z) {
   return static_cast<const Voxel*>(image.data) + ((z - pad) * size[1] + y - pad) * size[0];
 }
 
+// At voxel (x, y, z), which lies in an image of bricks, within BrickReads.
+template <class Voxel>
+inline float brick_value(const ImageView& image, int64_t x, int64_t y, int64_t z) {
+  if constexpr (std::is_same_v<Voxel, UnitVoxel>) {
+    return 0;  // there are none
+  } else {
+    const int64_t pad = image.form.pad;
+    const auto stored = [&](int64_t i, int32_t dim) { return i >= pad && i < dim - pad; };
+    if (!stored(x, image.dims[0]) || !stored(y, image.dims[1]) || !stored(z, image.dims[2])) {
+      return image.form.pad_value;
+    }
+    return voxel_value(image.form, image.bricks->voxel<Voxel>(x - pad, y - pad, z - pad));
+  }
+}
+
 // At voxel (x, y, z), which lies in the image.
 template <class Voxel>
 inline float image_value(const ImageView& image, int64_t x, int64_t y, int64_t z) {
+  if (image.bricks != nullptr) {
+    const BrickReads reads(image.bricks);
+    return brick_value<Voxel>(image, x, y, z);
+  }
   const int64_t pad = image.form.pad;
   const Voxel* row = stored_row<Voxel>(image, y, z);
   if (row == nullptr || x < pad || x >= image.dims[0] - pad) return image.form.pad_value;
@@ -63,23 +83,58 @@ inline AxisCell axis_cell(float p, float scale, float offset, int32_t dim) {
   return {index, c - static_cast<float>(index)};
 }
 
-// values[0 .. dims[0]-1] = row (y, z) of the image.
-template <class Voxel>
-inline void image_row(const ImageView& image, int64_t y, int64_t z, float* values) {
-  const auto width = static_cast<size_t>(image.dims[0]);
-  const auto pad = static_cast<size_t>(image.form.pad);
-  const Voxel* row = stored_row<Voxel>(image, y, z);
-  if (row == nullptr) {
-    std::fill_n(values, width, image.form.pad_value);
-    return;
+// visit(stored voxels, x, count): those of first .. end - 1 in row (y, z), pieces one behind the
+// other; x counted in the image. What is padding is not visited. Within BrickReads.
+template <class Voxel, class Visit>
+inline void visit_stored(const ImageView& image, int64_t y, int64_t z, int64_t first, int64_t end,
+                         const Visit& visit) {
+  const int64_t pad = image.form.pad;
+  if (y < pad || z < pad || y >= image.dims[1] - pad || z >= image.dims[2] - pad) return;
+  first = std::max(first, pad);
+  end = std::min(end, image.dims[0] - pad);
+  if (first >= end) return;
+  if constexpr (!std::is_same_v<Voxel, UnitVoxel>) {
+    if (image.bricks != nullptr) {
+      return image.bricks->visit_row<Voxel>(
+          y - pad, z - pad, first - pad, end - pad,
+          [&](const Voxel* voxels, int64_t x, int64_t count) { visit(voxels, x + pad, count); });
+    }
   }
-  std::fill_n(values, pad, image.form.pad_value);
-  for (size_t x = pad; x < width - pad; ++x) values[x] = voxel_value(image.form, row[x - pad]);
-  std::fill_n(values + (width - pad), pad, image.form.pad_value);
+  visit(stored_row<Voxel>(image, y, z) + (first - pad), first, end - first);
 }
-inline void image_row(const ImageView& image, int64_t y, int64_t z, float* values) {
+
+// values[x - first] = the padding's value where voxel x of row (y, z) is padding, first <= x < end.
+inline void fill_padding(const ImageView& image, int64_t y, int64_t z, int64_t first, int64_t end,
+                         float* values) {
+  const int64_t pad = image.form.pad;
+  const bool stored = y >= pad && z >= pad && y < image.dims[1] - pad && z < image.dims[2] - pad;
+  const int64_t begin = stored ? std::clamp(pad, first, end) : end;
+  const int64_t behind = std::clamp(image.dims[0] - pad, begin, end);
+  std::fill_n(values, begin - first, image.form.pad_value);
+  std::fill_n(values + (behind - first), end - behind, image.form.pad_value);
+}
+
+// values[x - first] = voxel x of row (y, z) of the image, first <= x < end.
+template <class Voxel>
+inline void image_row(const ImageView& image, int64_t y, int64_t z, int64_t first, int64_t end,
+                      float* values) {
+  const BrickReads reads(image.bricks);
+  fill_padding(image, y, z, first, end, values);
+  visit_stored<Voxel>(image, y, z, first, end, [&](const Voxel* voxels, int64_t x, int64_t count) {
+    float* to = values + (x - first);
+    for (int64_t i = 0; i < count; ++i) {
+      to[i] = voxel_value(image.form, voxels[i]);
+    }
+  });
+}
+inline void image_row(const ImageView& image, int64_t y, int64_t z, int64_t first, int64_t end,
+                      float* values) {
   with_voxel_type(image.form.type,
-                  [&](auto voxel) { image_row<decltype(voxel)>(image, y, z, values); });
+                  [&](auto voxel) { image_row<decltype(voxel)>(image, y, z, first, end, values); });
+}
+// The whole row.
+inline void image_row(const ImageView& image, int64_t y, int64_t z, float* values) {
+  image_row(image, y, z, 0, image.dims[0], values);
 }
 
 }  // namespace plc

@@ -120,8 +120,8 @@ HWY_INLINE NearestStored nearest_stored(Ints index, int32_t dim, int32_t pad) {
 }
 
 // Any place of any image: for vectors with a lane whose cell lies in the padding or at its border,
-// which are as rare as objects that the image cuts, and for images of more voxels than 32 bits
-// number. Rows they number always.
+// which are as rare as objects that the image cuts, for images of bricks, and for images of more
+// voxels than 32 bits number. Rows they number always.
 template <class Voxel>
 HWY_NOINLINE Floats sample_padded(const ImageView& image, const Cells& x, const Cells& y,
                                   const Cells& z) {
@@ -153,6 +153,17 @@ HWY_NOINLINE Floats sample_padded(const ImageView& image, const Cells& x, const 
     alignas(64) uint32_t in_row[kLanes], of_row[kLanes];
     alignas(64) float voxel[kLanes];
     hn::Store(hn::BitCast(du, i.index), du, in_row);
+    if (image.bricks != nullptr) {
+      alignas(64) uint32_t of_plane[kLanes];
+      hn::Store(hn::BitCast(du, j.index), du, of_row);
+      hn::Store(hn::BitCast(du, k.index), du, of_plane);
+      for (uint32_t l = 0; l < kLanes; ++l) {
+        voxel[l] = static_cast<float>(
+            image.bricks->template voxel<Voxel>(in_row[l], of_row[l], of_plane[l]));
+      }
+      return hn::IfThenElse(hn::And(hn::And(i.same, j.same), k.same), value(hn::Load(d, voxel)),
+                            pad_value);
+    }
     hn::Store(hn::BitCast(du, hn::Add(j.index, hn::Mul(k.index, hn::Set(di, rows)))), du, of_row);
     for (uint32_t l = 0; l < kLanes; ++l) {
       voxel[l] = static_cast<float>(voxels[size_t{of_row[l]} * row + in_row[l]]);
@@ -169,6 +180,38 @@ HWY_NOINLINE Floats sample_padded(const ImageView& image, const Cells& x, const 
   return lerp(plane(zs[0]), plane(zs[1]), z.fraction);
 }
 
+// The same of an image of bricks.
+template <class Voxel>
+HWY_NOINLINE Floats sample_bricks(const ImageView& image, const Cells& x, const Cells& y,
+                                  const Cells& z) {
+  const FloatTag d;
+  const IntTag di;
+  const int32_t pad = image.form.pad;
+  alignas(64) int32_t first[3][kLanes];
+  // Whether both voxels of every cell along the axis are stored.
+  const auto store = [&](size_t a, Ints index) HWY_ATTR {
+    const Ints in_store = hn::Sub(index, hn::Set(di, pad));
+    const Ints last = hn::Set(di, image.dims[a] - 2 * pad - 1);
+    hn::Store(in_store, di, first[a]);
+    return hn::AllTrue(di, hn::And(hn::Gt(in_store, hn::Set(di, -1)), hn::Gt(last, in_store)));
+  };
+  if (!(store(0, x.index) && store(1, y.index) && store(2, z.index))) {
+    return sample_padded<Voxel>(image, x, y, z);
+  }
+  alignas(64) float voxel[8][kLanes];
+  for (uint32_t l = 0; l < kLanes; ++l) {
+    image.bricks->template cell<Voxel>(
+        first[0][l], first[1][l], first[2][l],
+        [&](size_t c, Voxel v) { voxel[c][l] = static_cast<float>(v); });
+  }
+  const VoxelValues<Voxel> value(image.form);
+  const auto along_x = [&](size_t c) HWY_ATTR {
+    return lerp(value(hn::Load(d, voxel[c])), value(hn::Load(d, voxel[c + 1])), x.fraction);
+  };
+  return lerp(lerp(along_x(0), along_x(2), y.fraction), lerp(along_x(4), along_x(6), y.fraction),
+              z.fraction);
+}
+
 // The image's value at p; Voxel is that of image.form.type. The bits of the scalar twin, and of the
 // same image with its padding and its values in memory as UnitVoxels.
 template <class Voxel>
@@ -179,7 +222,10 @@ HWY_INLINE Floats sample(const ImageView& image, const Floats3& p) {
   constexpr bool kPadded = !std::is_same_v<Voxel, UnitVoxel>;
   const Stored cells = stored<kPadded>(image, x, y, z);
   if constexpr (kPadded) {
-    if (HWY_UNLIKELY(!cells.all)) return sample_padded<Voxel>(image, x, y, z);
+    if (HWY_UNLIKELY(!cells.all)) {
+      return image.bricks != nullptr ? sample_bricks<Voxel>(image, x, y, z)
+                                     : sample_padded<Voxel>(image, x, y, z);
+    }
   }
   const auto* voxels = static_cast<const Voxel*>(image.data);
   const VoxelValues<Voxel> value(image.form);

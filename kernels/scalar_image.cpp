@@ -60,8 +60,8 @@ float sample(const ImageView& image, const Float4& p) {
   const auto stored = [&](const AxisCell& c, int32_t dim) {
     return c.index >= pad && c.index < dim - pad - 1;
   };
-  if (!kUnit &&
-      !(stored(x, image.dims[0]) && stored(y, image.dims[1]) && stored(z, image.dims[2]))) {
+  if (!kUnit && (image.bricks != nullptr || !stored(x, image.dims[0]) ||
+                 !stored(y, image.dims[1]) || !stored(z, image.dims[2]))) {
     return trilinear(x, y, z, [&](int32_t i, int32_t j, int32_t k) {
       return image_value<Voxel>(image, x.index + i, y.index + j, z.index + k);
     });

@@ -6,6 +6,7 @@
 
 #include "kernels/image_rows.h"
 #include "kernels/image_value.h"
+#include "pyramid/brick_cache.h"
 #include "pyramid/pyramid.h"
 
 namespace plc {
@@ -75,6 +76,48 @@ void for_rows(const std::array<int64_t, 3>& dims, const Executor& executor, floa
   });
 }
 
+// The range of some of the voxels.
+struct RangePart {
+  VoxelRange range;
+  bool any = false;  // finite ones
+
+  // Of `count` more.
+  void add(const kernels::VoxelExtent& more, size_t count) {
+    range.not_finite += static_cast<int64_t>(more.not_finite);
+    if (more.not_finite == count) return;
+    range.low = any ? std::min(range.low, more.low) : more.low;
+    range.high = any ? std::max(range.high, more.high) : more.high;
+    any = true;
+  }
+};
+
+VoxelRange joined(const std::vector<RangePart>& parts) {
+  VoxelRange all;
+  bool any = false;
+  for (const RangePart& part : parts) {
+    all.not_finite += part.range.not_finite;
+    if (!part.any) continue;
+    all.low = any ? std::min(all.low, part.range.low) : part.range.low;
+    all.high = any ? std::max(all.high, part.range.high) : part.range.high;
+    any = true;
+  }
+  return all;
+}
+
+// Brick by brick: each is fetched once.
+VoxelRange brick_range(const CachedBricks& bricks, VoxelType type, const Executor& executor) {
+  const auto count = static_cast<size_t>(bricks.counts().bricks);
+  std::vector<RangePart> parts(count);
+  executor.run(count, [&](size_t brick) {
+    const BrickReads reads(&bricks);
+    bricks.visit_brick(static_cast<uint32_t>(brick), [&](const void* row, int64_t length) {
+      const auto voxels = static_cast<size_t>(length);
+      parts[brick].add(kernels::voxel_extent(executor.simd(), type, row, voxels), voxels);
+    });
+  });
+  return joined(parts);
+}
+
 }  // namespace
 
 VoxelForm borrowed_form(const VolumeView& volume, const Window& window, int64_t pad,
@@ -126,25 +169,18 @@ void make_base_image(const VolumeView& volume, const Window& window, int64_t pad
 }
 
 VoxelRange voxel_range(const VolumeView& volume, const Executor& executor) {
+  if (volume.bricks != nullptr) return brick_range(*volume.bricks, volume.type, executor);
   const auto count = static_cast<size_t>(volume.dims[0] * volume.dims[1] * volume.dims[2]);
   const size_t tasks = (count + kRangeVoxels - 1) / kRangeVoxels;
-  std::vector<kernels::VoxelExtent> parts(tasks);
+  std::vector<RangePart> parts(tasks);
   executor.run(tasks, [&](size_t task) {
     const size_t begin = task * kRangeVoxels;
-    parts[task] = kernels::voxel_extent(executor.simd(), volume.type, voxel_address(volume, begin),
-                                        std::min(kRangeVoxels, count - begin));
+    parts[task].add(
+        kernels::voxel_extent(executor.simd(), volume.type, voxel_address(volume, begin),
+                              std::min(kRangeVoxels, count - begin)),
+        std::min(kRangeVoxels, count - begin));
   });
-  VoxelRange range;
-  bool any = false;
-  for (size_t task = 0; task < tasks; ++task) {
-    const kernels::VoxelExtent& part = parts[task];
-    range.not_finite += static_cast<int64_t>(part.not_finite);
-    if (part.not_finite == std::min(kRangeVoxels, count - task * kRangeVoxels)) continue;
-    range.low = any ? std::min(range.low, part.low) : part.low;
-    range.high = any ? std::max(range.high, part.high) : part.high;
-    any = true;
-  }
-  return range;
+  return joined(parts);
 }
 
 }  // namespace plc

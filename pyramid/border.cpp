@@ -1,14 +1,14 @@
 #include "pyramid/border.h"
 
+#include "pyramid/reduced_bricks.h"
+
 namespace plc {
 
 void close_border(PyramidLevel& level, double iso, double outside) {
-  const auto half_way = static_cast<float>((iso + outside) / 2);
-  const auto level_iso = static_cast<float>(iso);
-  visit_border(level.dims, [&](size_t voxel) {
-    float& value = level.values[voxel];
-    if (outside < iso ? value >= level_iso : value <= level_iso) value = half_way;
-  });
+  if (level.reduced != nullptr) return level.reduced->close_border(iso, outside);
+  const ClosedBorder closed(iso, outside);
+  visit_border(level.dims,
+               [&](size_t voxel) { level.values[voxel] = closed(level.values[voxel]); });
 }
 
 }  // namespace plc

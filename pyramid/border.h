@@ -24,10 +24,26 @@ void visit_border(const std::array<int64_t, 3>& dims, const Visit& visit) {
   }
 }
 
-// Brings what the border of a level above I_0 holds of the object (a value at iso or beyond it,
-// seen from `outside`, the value around the image) half way back to `outside`. All in [0,1]. On I_0
-// the padding is the border; on coarse images it is blended with what it surrounds, and a surface
-// that meets the object there would follow it away from the image for ever.
+// What becomes of a value of the border: what is of the object (at iso or beyond it, seen from
+// `outside`, the value around the image) is brought half way back to `outside`. All in [0,1].
+class ClosedBorder {
+ public:
+  ClosedBorder(double iso, double outside)
+      : iso_(static_cast<float>(iso)),
+        half_way_(static_cast<float>((iso + outside) / 2)),
+        below_(outside < iso) {}
+  float operator()(float value) const {
+    return (below_ ? value >= iso_ : value <= iso_) ? half_way_ : value;
+  }
+
+ private:
+  float iso_, half_way_;
+  bool below_;
+};
+
+// Closes the border of a level above I_0. On I_0 the padding is the border; on coarse images it is
+// blended with what it surrounds, and a surface that meets the object there would follow it away
+// from the image for ever.
 void close_border(PyramidLevel& level, double iso, double outside);
 
 }  // namespace plc

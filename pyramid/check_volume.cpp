@@ -16,7 +16,7 @@ bool is_volume_size(const std::array<int64_t, 3>& dims) {
 }
 
 Status check_volume(const VolumeView& volume) {
-  if (volume.voxels == nullptr) {
+  if (volume.voxels == nullptr && volume.bricks == nullptr) {
     return {ErrorCode::kInvalidArgument, "volume: voxels is null, expected the image's data"};
   }
   if (voxel_size(volume.type) == 0) {

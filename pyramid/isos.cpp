@@ -48,6 +48,8 @@ class SeenRows {
  public:
   explicit SeenRows(const SeenCells& cells)
       : cells_(cells),
+        image_(level_image(cells.level)),
+        row_(static_cast<size_t>(cells.level.dims[0])),
         width_(cells.axis[0].size()),
         rows_(static_cast<size_t>(cells.level.dims[1])),
         of_plane_(2 * rows_, -1) {
@@ -72,9 +74,8 @@ class SeenRows {
     float* to = along_x_.data() + place * width_;
     if (of_plane_[place] == z) return to;
     of_plane_[place] = z;
-    const float* row =
-        cells_.level.values.data() + (static_cast<size_t>(z) * rows_ + static_cast<size_t>(y)) *
-                                         static_cast<size_t>(cells_.level.dims[0]);
+    image_row(image_, y, z, row_.data());
+    const float* row = row_.data();
     const AxisCell* cells = cells_.axis[0].data();
     for (size_t x = 0, width = width_; x < width; ++x) {
       const AxisCell at = cells[x];
@@ -85,6 +86,8 @@ class SeenRows {
   }
 
   const SeenCells& cells_;
+  ImageView image_;
+  std::vector<float> row_;  // of the level
   size_t width_, rows_;
   std::vector<int32_t> of_plane_;  // which plane of the level is there
   Buffer<float> along_x_;          // of two successive planes

@@ -9,6 +9,7 @@
 #include <sys/mman.h>
 #endif
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "pyramid/sanitized.h"
@@ -94,8 +95,41 @@ void Memory::refuse(size_t size, int64_t in_use) {
   throw std::bad_alloc();
 }
 
+int64_t Memory::left() const {
+  if (limit_ == 0) return INT64_MAX;
+  int64_t left = limit_ - now();
+  const std::lock_guard<std::mutex> lock(reliefs_mutex_);
+  for (Relief* relief : reliefs_) left += relief->held();
+  return left;
+}
+
+void Memory::add_relief(Relief& relief) {
+  const std::lock_guard<std::mutex> lock(reliefs_mutex_);
+  reliefs_.push_back(&relief);
+}
+
+void Memory::remove_relief(Relief& relief) {
+  const std::lock_guard<std::mutex> lock(reliefs_mutex_);
+  std::erase(reliefs_, &relief);
+}
+
+bool Memory::relieve(size_t size) {
+  const std::lock_guard<std::mutex> lock(reliefs_mutex_);
+  return std::any_of(reliefs_.begin(), reliefs_.end(),
+                     [size](Relief* relief) { return relief->relieve(size); });
+}
+
 void* Memory::allocate(size_t size, size_t alignment) {
   if (size > static_cast<size_t>(INT64_MAX) / 2) refuse(size, now());
+  for (;;) {
+    void* data = try_allocate(size, alignment);
+    if (data != nullptr) return data;
+    if (!relieve(size)) refuse(size, now());
+  }
+}
+
+// Null where there is none, or not within the limit.
+void* Memory::try_allocate(size_t size, size_t alignment) {
   const auto bytes = static_cast<int64_t>(size);
   const int64_t now = now_.fetch_add(bytes, std::memory_order_relaxed) + bytes;
   void* data = nullptr;
@@ -105,7 +139,7 @@ void* Memory::allocate(size_t size, size_t alignment) {
   }
   if (data == nullptr) {
     now_.fetch_sub(bytes, std::memory_order_relaxed);
-    refuse(size, now - bytes);
+    return nullptr;
   }
   int64_t peak = peak_.load(std::memory_order_relaxed);
   while (peak < now && !peak_.compare_exchange_weak(peak, now, std::memory_order_relaxed)) {

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <new>
 #include <type_traits>
 #include <vector>
@@ -32,11 +33,14 @@ class Memory {
   void* allocate(size_t size, size_t alignment);
   void release(void* data, size_t size, size_t alignment) noexcept;
   int64_t now() const { return now_.load(std::memory_order_relaxed); }
-  // Until the limit; more than any machine has where there is none.
-  int64_t left() const { return limit_ == 0 ? INT64_MAX : limit_ - now(); }
+  // Until the limit, with what reliefs would release; more than any machine has where there is
+  // none.
+  int64_t left() const;
   int64_t peak() const { return peak_.load(std::memory_order_relaxed); }
   int64_t limit() const { return limit_; }
 
+  // Notes that so many bytes were asked for and are not to be had, and throws std::bad_alloc.
+  [[noreturn]] void refuse(int64_t size) { refuse(static_cast<size_t>(size), now()); }
   // What allocate() has thrown for, the first time since this was forgotten. size 0: for nothing.
   struct Refusal {
     uint64_t size = 0;
@@ -47,12 +51,26 @@ class Memory {
   }
   void forget_refusal() { refused_.store(0, std::memory_order_relaxed); }
 
+  // Whoever holds memory that it can do without: asked, by any thread, before anything is refused.
+  class Relief {
+   public:
+    virtual ~Relief() = default;
+    // Whether it has released any; `size` bytes are wanted.
+    virtual bool relieve(size_t size) = 0;
+    // Bytes that it could release.
+    virtual int64_t held() = 0;
+  };
+  void add_relief(Relief& relief);
+  void remove_relief(Relief& relief);
+
   // What buffers of this thread are allocated from; where no MemoryScope says so, the system's.
   static Memory& current();
 
  private:
   friend class MemoryScope;
   static constinit thread_local Memory* scoped;
+  void* try_allocate(size_t size, size_t alignment);
+  bool relieve(size_t size);
   // Notes the refusal, and throws.
   [[noreturn]] void refuse(size_t size, int64_t in_use);
 
@@ -62,6 +80,8 @@ class Memory {
   std::atomic<int64_t> peak_{0};
   std::atomic<uint64_t> refused_{0};
   std::atomic<int64_t> in_use_{0};
+  mutable std::mutex reliefs_mutex_;
+  std::vector<Relief*> reliefs_;
 };
 
 // Makes a memory the current one of this thread for as long as the scope lives.

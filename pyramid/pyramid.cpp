@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "pyramid/base_image.h"
+#include "pyramid/brick_cache.h"
 #include "pyramid/check_volume.h"
+#include "pyramid/reduced_bricks.h"
 #include "pyramid/reduction.h"
 #include "pyramid/taps.h"
 
@@ -66,8 +68,18 @@ Status check_floats(int level, const std::array<int64_t, 3>& dims) {
                                        "image, or reduce more"};
 }
 
+// I_0 is read as it is; the levels above it are floats only where they fit.
+Status check_bricks(const VolumeView& volume, const PyramidSpec& spec) {
+  const VoxelForm form = borrowed_form(volume, window_of(spec), spec.pad_voxels, spec.pad_value);
+  if (form.type != ImageType::kUnit) return {};
+  return {ErrorCode::kInvalidArgument,
+          "volume of bricks: of 32-bit integers, or with a window beyond the range of floats; such "
+          "voxels are needed in memory"};
+}
+
 // The levels whose voxels are floats: all but a borrowed I_0.
 Status check_levels(const VolumeView& volume, const PyramidSpec& spec) {
+  if (volume.bricks != nullptr) return check_bricks(volume, spec);
   std::array<int64_t, 3> dims = padded_dims(volume.dims, spec.pad_voxels);
   const VoxelForm form = borrowed_form(volume, window_of(spec), spec.pad_voxels, spec.pad_value);
   for (int h = 0; h <= spec.levels; ++h) {
@@ -95,13 +107,39 @@ size_t voxels_of(const PyramidLevel& level) {
   return static_cast<size_t>(level.dims[0] * level.dims[1] * level.dims[2]);
 }
 
+// The first level that is built whole.
+int first_whole(const VolumeView& volume, const PyramidSpec& spec) {
+  if (volume.bricks == nullptr) return 0;
+  std::vector<int64_t> voxels;
+  std::array<int64_t, 3> dims = padded_dims(volume.dims, spec.pad_voxels);
+  for (int h = 0; h <= spec.levels; ++h) {
+    voxels.push_back(dims[0] * dims[1] * dims[2]);
+    for (int64_t& dim : dims) dim = reduced(dim, spec.reduction);
+  }
+  const auto most = volume.bricks->cache()->limit() / static_cast<int64_t>(sizeof(float));
+  int first = spec.levels + 1;
+  for (int64_t sum = 0; first > 1; --first) {
+    const int64_t more = voxels[static_cast<size_t>(first) - 1];
+    sum += more;
+    if (sum > most || more >= kMaxVoxels) break;
+  }
+  return first;
+}
+
 // False when memory ran out.
-bool fill_level(const PyramidLevel& from, const Executor& executor, PyramidLevel& to) {
+bool fill_level(const PyramidLevel& from, bool whole, const Executor& executor, PyramidLevel& to) {
   std::array<AxisTaps, 3> taps;
   for (size_t axis = 0; axis < 3; ++axis) {
     // floor() makes voxels larger than rho^h, never smaller: U_h is at most one voxel.
     const double spread = std::min(1.0, from.unit / from.voxel[axis]);
     taps[axis] = make_axis_taps(from.dims[axis], to.dims[axis], spread);
+  }
+  if (!whole) {
+    to.reduced = std::make_shared<ReducedBricks>(level_image(from), from.bricks, std::move(taps),
+                                                 to.dims, executor.simd());
+    to.bricks = to.reduced;
+    to.form.type = ImageType::kF32;  // from 0 to 1: the values themselves
+    return true;
   }
   to.values.resize_uninitialized(voxels_of(to));
   return reduce_image(level_image(from), taps, to.dims, executor, to.values.data());
@@ -113,6 +151,7 @@ void fill_base(const VolumeView& volume, const PyramidSpec& spec, const Executor
   base.form = borrowed_form(volume, window, spec.pad_voxels, spec.pad_value);
   if (base.form.type != ImageType::kUnit) {
     base.borrowed = volume.voxels;
+    base.bricks = volume.bricks;
     return;
   }
   base.values.resize_uninitialized(voxels_of(base));
@@ -134,9 +173,12 @@ Status build_levels(const VolumeView& volume, const PyramidSpec& spec, const Exe
     base.unit = *std::min_element(volume.spacing.begin(), volume.spacing.end());
     fill_base(volume, spec, executor, base);
     pyramid.levels.push_back(std::move(base));
+    const int whole = first_whole(volume, spec);
     for (int h = 0; h < spec.levels; ++h) {
       PyramidLevel next = next_level(pyramid.levels.back(), spec.reduction);
-      if (!fill_level(pyramid.levels.back(), executor, next)) return out_of_memory(spec);
+      if (!fill_level(pyramid.levels.back(), h + 1 >= whole, executor, next)) {
+        return out_of_memory(spec);
+      }
       pyramid.levels.push_back(std::move(next));
     }
   } catch (const std::bad_alloc&) {
@@ -150,8 +192,9 @@ Status build_levels(const VolumeView& volume, const PyramidSpec& spec, const Exe
 ImageView level_image(const PyramidLevel& level) {
   ImageView image;
   image.data = level.values.data();
-  if (level.borrowed != nullptr) {
+  if (level.borrowed != nullptr || level.bricks != nullptr) {
     image.data = level.borrowed;
+    image.bricks = level.bricks.get();
     image.form = level.form;
   }
   for (size_t a = 0; a < 3; ++a) image.dims[a] = static_cast<int32_t>(level.dims[a]);

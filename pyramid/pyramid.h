@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "kernels/image.h"
@@ -12,16 +13,29 @@
 
 namespace plc {
 
+class CachedBricks;
+class ReducedBricks;
+
 // One image I_h, values in [0,1], x fastest. I_0 is the caller's volume where it lies: borrowed, in
 // its own type, padded and normalised as it is read. Where that cannot be (see build_pyramid) and
-// on the levels above it is a buffer of floats.
+// on the levels above it is a buffer of floats; or, of a volume of bricks, bricks, too.
 struct PyramidLevel {
   std::array<int64_t, 3> dims{0, 0, 0};  // M_h, N_h, P_h (11)
   std::array<double, 3> voxel{0, 0, 0};  // mu/M_h, nu/N_h, pi/P_h, mm
   double unit = 0;                       // U_h = rho^h U_0 (11), mm
   Buffer<float> values;                  // empty where the voxels are borrowed, and once released
   const void* borrowed = nullptr;        // else null
-  VoxelForm form;                        // of the borrowed voxels
+  VoxelForm form;                        // of the borrowed voxels, and of bricks
+  std::shared_ptr<const CachedBricks>
+      bricks{};  // of I_0, and of levels above it those of `reduced`
+  std::shared_ptr<ReducedBricks> reduced{};
+
+  // What the evolution needs no longer.
+  void release() {
+    values = Buffer<float>();
+    bricks.reset();
+    reduced.reset();
+  }
 };
 
 // The voxels of a level as the kernels read them, each at its index: scale 1, offset 0.
@@ -68,7 +82,8 @@ Status check_padded(const VolumeView& volume, int pad_voxels);
 // integers, and what has a window beyond the range of floats, become floats. Errors:
 // kInvalidArgument (reduction, window, level count too deep for the size), kInvalidData (dims, a
 // level of floats of 2^31 voxels or more), kOutOfMemory. The same bits for any executor and any
-// target.
+// target. Of a volume of bricks the levels from the coarsest on that fit into the limit of its
+// cache together are built whole, the others by bricks as they are read.
 Status build_pyramid(const VolumeView& volume, const PyramidSpec& spec, const Executor& executor,
                      Pyramid& pyramid);
 

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 namespace plc {
 
@@ -108,38 +109,52 @@ class BoundaryHistogram {
   struct Part {
     std::array<Vector<uint32_t>, 2> bins;
   };
-  // Sides of the voxels of a slice, a byte each.
-  using Slice = Vector<uint8_t>;
+  // A slice of the volume, and on which side its voxels are, a byte each.
+  template <typename Voxel>
+  struct Slice {
+    const Voxel* voxels = nullptr;
+    Vector<Voxel> own;  // of a volume of bricks
+    Vector<uint8_t> inside;
+  };
 
   double bin_width() const { return (range_.high - range_.low) / static_cast<double>(kBins); }
 
   void scan(size_t part) {
     switch (volume_.type) {
       case VoxelType::kU8:
-        return scan(static_cast<const uint8_t*>(volume_.voxels), part);
+        return scan<uint8_t>(part);
       case VoxelType::kI16:
-        return scan(static_cast<const int16_t*>(volume_.voxels), part);
+        return scan<int16_t>(part);
       case VoxelType::kU16:
-        return scan(static_cast<const uint16_t*>(volume_.voxels), part);
+        return scan<uint16_t>(part);
       case VoxelType::kI32:
-        return scan(static_cast<const int32_t*>(volume_.voxels), part);
+        return scan<int32_t>(part);
       case VoxelType::kF32:
-        return scan(static_cast<const float*>(volume_.voxels), part);
+        return scan<float>(part);
     }
   }
 
   template <typename Voxel>
-  void scan(const Voxel* voxels, size_t index) {
+  void scan(size_t index) {
     const size_t begin = index * slices_per_part_;
     const size_t end = std::min(slices_, begin + slices_per_part_);
     const size_t size = width_ * rows_;
     for (auto& side : parts_[index].bins) side.assign(kBins, 0);
     const InsideTest<Voxel> inside(iso_, above_);
-    Slice below(size), here(size), above(size);
-    Slice differ((width_ + kWord - 1) / kWord * kWord, 0);
+    Slice<Voxel> below, here, above;
+    Vector<uint8_t> differ((width_ + kWord - 1) / kWord * kWord, 0);
     // At the ends of the volume a slice is its own neighbour.
-    const auto read = [&](size_t z, Slice& slice) {
-      inside.test(voxels + std::min(z, slices_ - 1) * size, size, slice.data());
+    const auto read = [&](size_t z, Slice<Voxel>& slice) {
+      const size_t first = std::min(z, slices_ - 1) * size;
+      if (volume_.bricks != nullptr) {
+        slice.own.resize(size);
+        read_voxels(volume_, first, size, slice.own.data());
+        slice.voxels = slice.own.data();
+      } else {
+        slice.voxels = static_cast<const Voxel*>(volume_.voxels) + first;
+      }
+      slice.inside.resize(size);
+      inside.test(slice.voxels, size, slice.inside.data());
     };
     read(begin == 0 ? 0 : begin - 1, below);
     read(begin, here);
@@ -149,14 +164,15 @@ class BoundaryHistogram {
         const size_t row = y * width_;
         const size_t before = y == 0 ? row : row - width_;
         const size_t behind = y + 1 == rows_ ? row : row + width_;
+        const uint8_t* sides = here.inside.data();
         compare(
-            here.data() + row,
-            {here.data() + before, here.data() + behind, below.data() + row, above.data() + row},
+            sides + row,
+            {sides + before, sides + behind, below.inside.data() + row, above.inside.data() + row},
             differ.data());
-        count(voxels + z * size + row, here.data() + row, differ, parts_[index]);
+        count(here.voxels + row, sides + row, differ, parts_[index]);
       }
-      below.swap(here);
-      here.swap(above);
+      std::swap(below, here);
+      std::swap(here, above);
     }
   }
 
@@ -174,7 +190,8 @@ class BoundaryHistogram {
   }
 
   template <typename Voxel>
-  void count(const Voxel* row, const uint8_t* inside, const Slice& differ, Part& part) const {
+  void count(const Voxel* row, const uint8_t* inside, const Vector<uint8_t>& differ,
+             Part& part) const {
     for (size_t first = 0; first < differ.size(); first += kWord) {
       uint64_t word = 0;
       std::memcpy(&word, differ.data() + first, kWord);

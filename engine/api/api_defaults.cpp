@@ -25,6 +25,21 @@ void plc_image_defaults(plc_image* image) {
   }
 }
 
+void plc_bricks_defaults(plc_bricks* bricks) {
+  if (bricks == nullptr) return;
+  *bricks = {};
+  bricks->struct_size = sizeof *bricks;
+  for (int i = 0; i < 3; ++i) {
+    bricks->brick[i] = 64;
+    bricks->spacing[i] = 1;
+    bricks->direction[4 * i] = 1;
+  }
+}
+
+void plc_brick_counts_defaults(plc_brick_counts* counts) {
+  if (counts != nullptr) clear_output(counts);
+}
+
 void plc_parameters_defaults(plc_parameters* p) {
   if (p == nullptr) return;
   *p = {};

@@ -70,6 +70,9 @@ Status build(const std::shared_ptr<const VolumeData>& source, const plc_paramete
   // Before all its voxels are looked at.
   if (Status s = check_padded(volume, kPadVoxels); !s.ok()) return s;
   if (p.feature == PLC_FEATURE_GRADIENT_NORM) {
+    if (volume.bricks != nullptr) {
+      return bad_argument("feature: the gradient's norm is not made of a volume of bricks");
+    }
     if (Status s = gradient_norm(volume, p.feature_sigma, host.schedule, pyramid.feature);
         !s.ok()) {
       return s;
@@ -102,7 +105,8 @@ Pyramid borrowed(const Pyramid& pyramid) {
   Pyramid out = without_values(pyramid);
   for (size_t h = 0; h < out.levels.size(); ++h) {
     const PyramidLevel& level = pyramid.levels[h];
-    out.levels[h].borrowed = level.borrowed != nullptr ? level.borrowed : level.values.data();
+    out.levels[h].borrowed = level.values.empty() ? level.borrowed : level.values.data();
+    out.levels[h].bricks = level.bricks;
     out.levels[h].form = level.form;
   }
   return out;

@@ -62,7 +62,14 @@ uint64_t voxels_hash(const VolumeView& volume, const Executor& executor) {
   }
   std::vector<uint64_t> part(block_count(bytes, kBlock));
   run_blocks(executor, bytes, kBlock, [&](size_t index, size_t begin, size_t end) {
-    part[index] = words_hash(static_cast<const uint8_t*>(volume.voxels) + begin, end - begin);
+    if (volume.bricks == nullptr) {
+      part[index] = words_hash(static_cast<const uint8_t*>(volume.voxels) + begin, end - begin);
+      return;
+    }
+    Vector<uint8_t> block(end - begin);
+    const size_t size = voxel_bytes(volume.type);
+    read_voxels(volume, begin / size, block.size() / size, block.data());
+    part[index] = words_hash(block.data(), block.size());
   });
   hash.add_all(part);
   return hash.value();

@@ -6,6 +6,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -42,6 +43,12 @@ struct Host {
 };
 
 // In each of these the host comes first: it goes last, and with it the memory of the rest.
+
+// A host's callback could not fetch a brick.
+class BrickFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 struct VolumeData {
   std::shared_ptr<Host> host;
@@ -115,6 +122,8 @@ plc_status caught(Body&& body, Tell&& tell) {
       status = too_many_vertices();
     } catch (const std::bad_alloc&) {
       throw;
+    } catch (const BrickFailure& e) {
+      status = {ErrorCode::kInvalidData, e.what()};
     } catch (const std::exception& e) {
       status = {ErrorCode::kInternal, e.what()};
     } catch (...) {

@@ -382,7 +382,7 @@ Status Recovery::ask_verdict() {
 
 Status Recovery::leave_level() {
   if (hooks_.left) hooks_.left(record());
-  pyramid_.levels[static_cast<size_t>(level_)].values = Buffer<float>();  // not needed any more
+  pyramid_.levels[static_cast<size_t>(level_)].release();
   if (level_ == 0 && mesh_.vertex_count() == 0) {
     return {ErrorCode::kInvalidData,
             "no surface: nothing in the image holds one at this iso-value; check the iso-value, or "

@@ -6,9 +6,10 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <utility>
 
 #include "engine/base/state_io.h"
-#include "pyramid/buffer.h"
 #include "pyramid/memory.h"
 
 namespace plc {
@@ -17,7 +18,8 @@ using Voxel = std::array<int32_t, 3>;  // x, y, z
 
 // Every slice is cut into blocks of kBlock successive voxels; a block exists once a voxel of it was
 // put in. The sets here follow surfaces: on an image of 1024^3 a byte per voxel would be a
-// gigabyte, a bit 128 MiB, the blocks along a surface some megabytes.
+// gigabyte, a bit 128 MiB, the blocks along a surface some megabytes beside 2 MiB that tell which
+// there are.
 //
 // Voxels lie in the image. Several threads may read; several may change voxels of different slices.
 class VoxelSet {
@@ -28,14 +30,37 @@ class VoxelSet {
         rows_(static_cast<size_t>(dims[1])),
         slices_(static_cast<size_t>(dims[2])),
         slice_blocks_((width_ * rows_ + kBlock - 1) / kBlock),
-        blocks_(slice_blocks_ * slices_) {}
+        blocks_(slice_blocks_ * slices_, nullptr),
+        memory_(&Memory::current()) {}
+  VoxelSet(const VoxelSet& other)
+      : width_(other.width_),
+        rows_(other.rows_),
+        slices_(other.slices_),
+        slice_blocks_(other.slice_blocks_),
+        blocks_(other.blocks_.size(), nullptr),
+        memory_(&Memory::current()) {
+    try {
+      for (size_t b = 0; b < blocks_.size(); ++b) {
+        if (other.blocks_[b] != nullptr) std::memcpy(block(b), other.blocks_[b], kBlock / 8);
+      }
+    } catch (...) {
+      clear();
+      throw;
+    }
+  }
+  VoxelSet(VoxelSet&& other) noexcept { swap(other); }
+  VoxelSet& operator=(VoxelSet other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~VoxelSet() { clear(); }
 
   // Whether it is a set of some image's voxels at all.
   bool has_image() const { return !blocks_.empty(); }
 
   bool has(const Voxel& v) const {
     const Bit at = bit_of(v);
-    const uint64_t* words = blocks_[at.block].data();
+    const uint64_t* words = blocks_[at.block];
     return words != nullptr && (words[at.word] & at.mask) != 0;
   }
   void insert(const Voxel& v) {
@@ -45,7 +70,7 @@ class VoxelSet {
   void erase(const Voxel& v) {
     const Bit at = bit_of(v);
     assert(at.block < blocks_.size());
-    uint64_t* words = blocks_[at.block].data();
+    uint64_t* words = blocks_[at.block];
     if (words != nullptr) words[at.word] &= ~at.mask;
   }
   // Puts it in where it was not, and the other way round.
@@ -63,7 +88,7 @@ class VoxelSet {
     size_t i = begin + static_cast<size_t>(first);
     const size_t stop = begin + static_cast<size_t>(end);
     while (i < stop) {
-      const uint64_t* words = blocks_[static_cast<size_t>(z) * slice_blocks_ + i / kBlock].data();
+      const uint64_t* words = blocks_[static_cast<size_t>(z) * slice_blocks_ + i / kBlock];
       const size_t next = (i / kBlock + 1) * kBlock;
       if (words == nullptr) {
         i = next;
@@ -83,7 +108,7 @@ class VoxelSet {
   template <typename Visit>
   void visit(const Visit& visit) const {
     for (size_t b = 0; b < blocks_.size(); ++b) {
-      const uint64_t* words = blocks_[b].data();
+      const uint64_t* words = blocks_[b];
       for (size_t w = 0; words != nullptr && w < kBlock / kWord; ++w) {
         for (uint64_t later = ~uint64_t{0}; (words[w] & later) != 0;) {
           const auto bit = static_cast<size_t>(std::countr_zero(words[w] & later));
@@ -97,9 +122,9 @@ class VoxelSet {
   // Of an image of the same size.
   void save(StateWriter& to) const {
     to.add(static_cast<uint64_t>(
-        std::count_if(blocks_.begin(), blocks_.end(), [](const auto& b) { return !b.empty(); })));
+        blocks_.size() - static_cast<size_t>(std::count(blocks_.begin(), blocks_.end(), nullptr))));
     for (size_t b = 0; b < blocks_.size(); ++b) {
-      if (blocks_[b].empty()) continue;
+      if (blocks_[b] == nullptr) continue;
       to.add(static_cast<uint64_t>(b));
       for (size_t w = 0; w < kBlock / kWord; ++w) to.add(blocks_[b][w]);
     }
@@ -120,6 +145,7 @@ class VoxelSet {
  private:
   static constexpr size_t kWord = 64;
   static constexpr size_t kBlock = 4096;
+  static constexpr size_t kAlignment = 64;
 
   struct Bit {
     size_t block, word;
@@ -136,13 +162,32 @@ class VoxelSet {
             static_cast<int32_t>(block / slice_blocks_)};
   }
   uint64_t* block(size_t index) {
-    if (blocks_[index].empty()) blocks_[index].resize(kBlock / kWord);
-    return blocks_[index].data();
+    uint64_t*& words = blocks_[index];
+    if (words == nullptr) {
+      words = static_cast<uint64_t*>(memory_->allocate(kBlock / 8, kAlignment));
+      std::memset(words, 0, kBlock / 8);
+    }
+    return words;
+  }
+  void clear() noexcept {
+    for (uint64_t* words : blocks_) {
+      if (words != nullptr) memory_->release(words, kBlock / 8, kAlignment);
+    }
+    blocks_.clear();
+  }
+  void swap(VoxelSet& other) noexcept {
+    std::swap(width_, other.width_);
+    std::swap(rows_, other.rows_);
+    std::swap(slices_, other.slices_);
+    std::swap(slice_blocks_, other.slice_blocks_);
+    blocks_.swap(other.blocks_);
+    std::swap(memory_, other.memory_);
   }
 
   size_t width_ = 0, rows_ = 0, slices_ = 0;
   size_t slice_blocks_ = 0;
-  Vector<Buffer<uint64_t>> blocks_;  // slice by slice
+  Vector<uint64_t*> blocks_;  // slice by slice
+  Memory* memory_ = nullptr;  // of them
 };
 
 }  // namespace plc

@@ -169,6 +169,52 @@ TEST_CASE("an extraction survives every allocation that fails", "[faults]") {
             samples::extract(samples::make_context().get(), job.image, job.parameters).get()));
 }
 
+TEST_CASE("an extraction by bricks survives every allocation that fails", "[faults]") {
+  Job job;
+  job.parameters.max_iterations = 2;
+  const Context context = lent_context();
+  make_room_for_messages(context.get(), job);
+  plc_bricks bricks;
+  plc_bricks_defaults(&bricks);
+  bricks.type = PLC_F32;
+  std::copy_n(job.image.dims, 3, bricks.dims);
+  std::fill_n(bricks.brick, 3, 16);
+  std::copy_n(job.image.spacing, 3, bricks.spacing);
+  bricks.cache = 1;  // so that level 1 comes by bricks, too
+  bricks.fetch = [](const int64_t at[3], void* voxels, char*, size_t, void* user) {
+    const auto& image = *static_cast<const plc_image*>(user);
+    const auto* from = static_cast<const float*>(image.voxels);
+    for (int64_t i = 0; i < 16 * 16 * 16; ++i) {
+      const int64_t x = at[0] * 16 + i % 16, y = at[1] * 16 + i / 16 % 16, z = at[2] * 16 + i / 256;
+      if (x >= image.dims[0] || y >= image.dims[1] || z >= image.dims[2]) continue;
+      static_cast<float*>(voxels)[i] = from[(z * image.dims[1] + y) * image.dims[0] + x];
+    }
+    return 0;
+  };
+  plc_image image = job.image;
+  bricks.user = &image;
+  uint64_t hash = 0;
+  plc_volume* first = nullptr;  // the context keeps room to know of caches
+  REQUIRE(plc_volume_create_bricks(context.get(), &bricks, &first) == PLC_OK);
+  plc_volume_destroy(first);
+  const Tried tried = fail_in_turn([&] {
+    plc_volume* volume = nullptr;
+    plc_surface* surface = nullptr;
+    plc_status status = plc_volume_create_bricks(context.get(), &bricks, &volume);
+    if (status == PLC_OK) {
+      status = plc_extract_volume(context.get(), volume, &job.parameters, nullptr, &surface);
+    }
+    if (status == PLC_OK && hash != 0 && hash != plc_surface_hash(surface)) return PLC_INTERNAL;
+    if (status == PLC_OK) hash = plc_surface_hash(surface);
+    plc_surface_destroy(surface);
+    plc_volume_destroy(volume);
+    return status;
+  });
+  tell("an extraction by bricks", tried);
+  CHECK(tried.failures > tried.allocations / 3);  // bricks make room for the others
+  CHECK(hash == plc_surface_hash(samples::extract(context.get(), job.image, job.parameters).get()));
+}
+
 TEST_CASE("making, stepping, saving and restoring a run survives every allocation that fails",
           "[faults]") {
   const Job job;

@@ -1,11 +1,15 @@
 // A Zarr hierarchy of any values. The bytes are a list of keys and values, each ended by a line
 // of "----": what libFuzzer puts together from those of good hierarchies.
+#include <algorithm>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/refusal.h"
 #include "tests/samples/sample_zarr.h"
+#include "tools/volume/brick_source.h"
 #include "tools/volume/ome_zarr.h"
 
 namespace fuzz {
@@ -39,6 +43,16 @@ void volume_zarr(Bytes bytes) {
     if (voxels > kMost) return;
     const plc::tools::LoadedVolume volume = plc::tools::read_ome_zarr(store, image, 1);
     require(volume.image.voxels == volume.bytes.data(), "an image without its voxels");
+    const auto source =
+        plc::tools::open_zarr_bricks(std::make_shared<const samples::ZarrMemory>(store), "");
+    if (source == nullptr) return;
+    require(source->image().type == volume.image.type, "bricks of another type");
+    plc::tools::VoxelBox all{};
+    for (size_t a = 0; a < 3; ++a) all.high[a] = volume.image.dims[a] - 1;
+    std::vector<std::byte> bricks(volume.bytes.size());
+    source->read(all, bricks.data());
+    require(std::equal(bricks.begin(), bricks.end(), volume.bytes.begin()),
+            "other voxels by bricks");
   });
 }
 

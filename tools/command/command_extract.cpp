@@ -1,5 +1,6 @@
 #include "tools/command/command_extract.h"
 
+#include <cinttypes>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "tools/command/engine_handles.h"
 #include "tools/command/extract_inputs.h"
 #include "tools/command/extract_job.h"
+#include "tools/command/extract_volume.h"
 #include "tools/command/kept_surface.h"
 #include "tools/command/mesh_precision.h"
 #include "tools/command/progress_line.h"
@@ -20,9 +22,7 @@
 #include "tools/command/surface_mesh.h"
 #include "tools/command/trace_file.h"
 #include "tools/file/failure.h"
-#include "tools/file/memory.h"
 #include "tools/mesh/mesh_io.h"
-#include "tools/volume/volume_io.h"
 
 namespace plc::tools {
 
@@ -70,7 +70,7 @@ plc_verdict on_level(const plc_level_report* level, const plc_surface* surface, 
 }
 
 // NULL where it was cancelled.
-SurfaceHandle evolve(plc_context* context, const plc_image& image, const ExtractJob& job,
+SurfaceHandle evolve(plc_context* context, ExtractVolume& volume, const ExtractJob& job,
                      const ExtractInputs& inputs, const ExtractOptions& options, ProgressLine& line,
                      TraceFile& trace, const InterruptGuard& interrupt) {
   Watch watch{line, trace, interrupt};
@@ -83,7 +83,7 @@ SurfaceHandle evolve(plc_context* context, const plc_image& image, const Extract
     extras.level_user = &files;
   }
   plc_surface* surface = nullptr;
-  const plc_status status = plc_extract(context, &image, &job.parameters, &extras, &surface);
+  const plc_status status = volume.extract(context, job.parameters, extras, &surface);
   if (status == PLC_CANCELLED) return nullptr;
   if (status != PLC_OK) throw failure_of(context);
   SurfaceHandle result(surface);
@@ -106,11 +106,9 @@ class Extraction {
     check_paths(jobs_);
     for (const ExtractJob& job : jobs_) traces_.emplace_back(job.trace);
     interrupt.end_at_once();
-    volume_ = read_volume_apart(options.input, options.nifti_frame);
-    print_warnings(volume_);
-    inputs_.emplace(options, volume_.image);
-    if (options.box) volume_ = cut_out(options.input, volume_, *options.box);
-    for (ExtractJob& job : jobs_) resolve(job, volume_.image);
+    volume_.emplace(options);
+    inputs_.emplace(options, volume_->whole());
+    for (ExtractJob& job : jobs_) resolve(job, volume_->voxels());
     context_ = make_context(context_options());  // from here on there are threads
     read_ = now() - start_;
   }
@@ -127,7 +125,7 @@ class Extraction {
   // What the machine has not is refused in a line, before the system ends the process without one.
   plc_context_options context_options() const {
     plc_context_options context = options_.context;
-    context.memory_limit = static_cast<int64_t>(available_memory());
+    context.memory_limit = memory_limit(options_);
     if (options_.progress != Progress::kNone) context.log = on_log;
     return context;
   }
@@ -138,8 +136,8 @@ class Extraction {
     if (job.follows) follow(index, job);
     interrupt_.note_first();
     ProgressLine line(options_.progress);
-    surface_ = evolve(context_.get(), volume_.image, job, *inputs_, options_, line, traces_[index],
-                      interrupt_);
+    surface_ =
+        evolve(context_.get(), *volume_, job, *inputs_, options_, line, traces_[index], interrupt_);
     line.clear();
     if (surface_ == nullptr || interrupt_.interrupted()) return interrupt_.tell();
     if (plc_surface_face_count(surface_.get()) == 0) {
@@ -155,7 +153,7 @@ class Extraction {
     plc_parameters& p = job.parameters;
     const ExtractJob& before = jobs_[index - 1];
     const double last = before.parameters.iso;
-    if (!nearer(volume_.image, last, p.iso, p.inside_below != 0)) return;
+    if (!nearer(volume_->voxels(), last, p.iso, p.inside_below != 0)) return;
     TriangleMesh start = mesh_of(context_.get(), surface_.get(), options_.space);
     if (!doubles_) round_to_floats(start.xyz);  // as that of the file is
     inputs_->start_from(std::move(start));
@@ -175,6 +173,10 @@ class Extraction {
     if (result.bodies > 0) {
       report["keep"] = {
           {"asked", options_.keep.text}, {"kept", result.kept}, {"of", result.bodies}};
+    }
+    if (const auto counts = volume_->brick_counts(context_.get())) {
+      report["bricks"] = {
+          {"count", counts->bricks}, {"read", counts->read}, {"read_again", counts->read_again}};
     }
     if (!options_.box) return;
     const VoxelBox& box = *options_.box;
@@ -202,8 +204,8 @@ class Extraction {
     trace.commit();
     const Timings timings{read_, now() - written, now() - start_};
     if (!job.report.empty()) {
-      auto report =
-          make_report(context_.get(), volume_.image, surface_.get(), measures, timings, options_);
+      auto report = make_report(context_.get(), volume_->image(), surface_.get(), measures, timings,
+                                options_);
       report["coordinates"] = precision_text(doubles_);
       add_choices(report, job, result);
       write_report(job.report, report);
@@ -212,11 +214,16 @@ class Extraction {
       if (!job.iso.text.empty() && !job.iso.is_number()) {
         std::printf("iso      %.6g (%s)\n", job.parameters.iso, job.iso.text.c_str());
       }
+      if (const auto counts = volume_->brick_counts(context_.get())) {
+        std::printf("bricks   %" PRId64 " of the image, %" PRId64 " read, %" PRId64
+                    " of them again\n",
+                    counts->bricks, counts->read, counts->read_again);
+      }
       if (result.bodies > 0) {
         std::printf("kept     %zu of %zu bodies\n", result.kept, result.bodies);
       }
       std::fputs(
-          summary(context_.get(), volume_.image, surface_.get(), measures, timings, job.output)
+          summary(context_.get(), volume_->image(), surface_.get(), measures, timings, job.output)
               .c_str(),
           stdout);
       std::fflush(stdout);
@@ -235,7 +242,7 @@ class Extraction {
   std::vector<ExtractJob> jobs_;
   std::vector<TraceFile> traces_;
   ContextHandle context_;
-  LoadedVolume volume_{};
+  std::optional<ExtractVolume> volume_;
   std::optional<ExtractInputs> inputs_;
   SurfaceHandle surface_;   // the last one
   std::string start_text_;  // what it follows, as the report tells it; "": what --init says

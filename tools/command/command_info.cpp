@@ -137,7 +137,7 @@ void print_image(const std::string& path, const LoadedVolume& volume) {
 
 int run_image(const InfoOptions& options) {
   const LoadedVolume volume = read_volume_apart(options.input, options.nifti_frame);
-  print_warnings(volume);
+  print_warnings(volume.warnings);
   if (options.json) {
     std::puts(image_json(options.input, volume).dump(2).c_str());
   } else {

@@ -86,7 +86,7 @@ class LabelExtraction {
     check_label_paths(options);
     interrupt.end_at_once();
     volume_ = read_volume_apart(options.labels, options.nifti_frame);
-    print_warnings(volume_);
+    print_warnings(volume_.warnings);
     context_ = make_context(options.context);
     find_names();
     for (const Label& label : find_labels(options.labels, volume_.image)) {

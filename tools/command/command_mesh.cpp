@@ -72,7 +72,7 @@ class MeshWork {
     }
     if (!options.image.empty()) {
       image_ = read_volume_apart(options.image, options.nifti_frame);
-      print_warnings(image_);
+      print_warnings(image_.warnings);
     }
     plc_context_options context_options;
     plc_context_options_defaults(&context_options);

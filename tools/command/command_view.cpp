@@ -134,7 +134,7 @@ int run_view(const ViewOptions& options) {
   if (!source.missing.empty()) throw Failure{"view: " + std::string(source.missing)};
   check_page_path(options.output);
   const LoadedVolume volume = read_volume_apart(options.image, options.nifti_frame);
-  print_warnings(volume);
+  print_warnings(volume.warnings);
   ViewedScene scene;
   scene.name = std::filesystem::path(options.image).filename().string();
   scene.image = volume.image;

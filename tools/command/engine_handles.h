@@ -10,10 +10,12 @@ namespace plc::tools {
 
 struct EngineDeleter {
   void operator()(plc_context* context) const { plc_context_destroy(context); }
+  void operator()(plc_volume* volume) const { plc_volume_destroy(volume); }
   void operator()(plc_surface* surface) const { plc_surface_destroy(surface); }
 };
 
 using ContextHandle = std::unique_ptr<plc_context, EngineDeleter>;
+using VolumeHandle = std::unique_ptr<plc_volume, EngineDeleter>;
 using SurfaceHandle = std::unique_ptr<plc_surface, EngineDeleter>;
 
 inline Failure failure_of(const plc_context* context) {

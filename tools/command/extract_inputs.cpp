@@ -9,7 +9,7 @@ ExtractInputs::ExtractInputs(const ExtractOptions& options, const plc_image& ima
   if (!options.attach.empty()) attach_ = read_attach_file(options.attach);
   if (options.parameters.init == PLC_INIT_MASK) {
     mask_ = read_volume_apart(options.init_file, options.nifti_frame);
-    print_warnings(mask_);
+    print_warnings(mask_.warnings);
     if (options.box) mask_ = cut_out(options.init_file, mask_, *options.box);
   }
   if (options.parameters.init == PLC_INIT_MESH) {

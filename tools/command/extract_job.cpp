@@ -21,12 +21,14 @@ ExtractJob job_of(const ExtractOptions& options, const plc_parameters& parameter
           false};
 }
 
-int64_t object_voxels(const plc_image& image, double iso, bool inside_below) {
-  return with_voxels(image, [&](const auto* first, const auto* last) -> int64_t {
-    return std::count_if(first, last, [&](auto x) {
+int64_t object_voxels(const Voxels& voxels, double iso, bool inside_below) {
+  int64_t count = 0;
+  voxels.visit([&](const auto* first, const auto* last) {
+    count += std::count_if(first, last, [&](auto x) {
       return inside_below ? static_cast<double>(x) <= iso : static_cast<double>(x) >= iso;
     });
   });
+  return count;
 }
 
 void check_paths(const std::vector<ExtractJob>& jobs) {
@@ -72,18 +74,18 @@ std::vector<ExtractJob> jobs_of(const ExtractOptions& options) {
   return jobs;
 }
 
-void resolve(ExtractJob& job, const plc_image& image) {
+void resolve(ExtractJob& job, const Voxels& voxels) {
   if (job.iso.text.empty()) return;
   if (!job.iso.is_number() && job.parameters.feature != PLC_FEATURE_NONE) {
     throw Failure{"--iso " + job.iso.text +
                   ": is of the image itself; with --feature gradient-norm a number is needed"};
   }
-  job.parameters.iso = resolved(job.iso, image);
+  job.parameters.iso = resolved(job.iso, voxels);
 }
 
-bool nearer(const plc_image& image, double from, double to, bool inside_below) {
-  const int64_t before = object_voxels(image, from, inside_below);
-  const int64_t after = object_voxels(image, to, inside_below);
+bool nearer(const Voxels& voxels, double from, double to, bool inside_below) {
+  const int64_t before = object_voxels(voxels, from, inside_below);
+  const int64_t after = object_voxels(voxels, to, inside_below);
   return std::abs(before - after) < after;
 }
 

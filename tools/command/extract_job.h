@@ -20,13 +20,13 @@ struct ExtractJob {
 std::string named(const std::string& path, const std::string& name);
 
 // Puts the value of the job's iso among its parameters. Throws Failure.
-void resolve(ExtractJob& job, const plc_image& image);
+void resolve(ExtractJob& job, const Voxels& voxels);
 
 // In the order in which they run. Throws Failure where two would write the same file.
 std::vector<ExtractJob> jobs_of(const ExtractOptions& options);
 
 // Whether fewer voxels lie between the two values than the object of `to` holds:
 // then its surface is nearer to that of `from` than to a bubble around it (figure 24).
-bool nearer(const plc_image& image, double from, double to, bool inside_below);
+bool nearer(const Voxels& voxels, double from, double to, bool inside_below);
 
 }  // namespace plc::tools

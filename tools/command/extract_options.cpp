@@ -347,6 +347,11 @@ class Declarations {
            options.context.threads = to_integer("--threads", s);
            if (options.context.threads < 1) refuse_value("--threads", s, "at least 1");
          });
+    text("--memory", "SIZE", "",
+         "Memory of the whole process, as in 4G or 512M. OME-Zarr, and NIfTI, NRRD and MetaImage "
+         "that are not packed, are then read by bricks, and may be larger than memory; other "
+         "images are read whole. The same bits",
+         [&options = options_](const std::string& s) { options.memory = to_bytes("--memory", s); });
     choice("--simd", kSimds, options_.context.simd, "Instruction set; results do not depend on it");
   }
 

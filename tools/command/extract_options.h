@@ -41,6 +41,7 @@ struct ExtractOptions {
   plc_context_options context;
   plc_space space = PLC_SPACE_LPS;
   NiftiFrame nifti_frame = NiftiFrame::kAuto;
+  std::optional<int64_t> memory;  // bytes
   bool each_level = false;
   Progress progress = Progress::kText;
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/pellicle.h"
+#include "tools/volume/voxels.h"
 
 namespace plc::tools {
 
@@ -21,6 +21,6 @@ struct IsoChoice {
 std::vector<IsoChoice> to_iso_choices(const std::string& option, const std::string& text);
 
 // The value. Throws Failure where the image tells none.
-double resolved(const IsoChoice& choice, const plc_image& image);
+double resolved(const IsoChoice& choice, const Voxels& voxels);
 
 }  // namespace plc::tools

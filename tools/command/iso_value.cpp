@@ -7,11 +7,11 @@
 
 namespace plc::tools {
 
-double resolved(const IsoChoice& choice, const plc_image& image) {
+double resolved(const IsoChoice& choice, const Voxels& voxels) {
   if (choice.is_number()) return choice.number;
   const double value = choice.kind == IsoChoice::Kind::kOtsu
-                           ? otsu_of(image)
-                           : percentiles_of(image, {choice.number})[0];
+                           ? otsu_of(voxels)
+                           : percentiles_of(voxels, {choice.number})[0];
   if (std::isnan(value)) {
     throw Failure{"--iso " + choice.text + ": the image tells none: all its voxels are the same"};
   }

@@ -84,6 +84,25 @@ int to_integer(const std::string& option, const std::string& text) {
   return value;
 }
 
+int64_t to_bytes(const std::string& option, const std::string& text) {
+  constexpr std::string_view kUnits = "KMGT";
+  constexpr double kMost = 1e18;
+  std::string number = text;
+  double bytes = 1;
+  const size_t unit = text.empty() ? std::string::npos : kUnits.find(text.back());
+  if (unit != std::string::npos) {
+    number.pop_back();
+    for (size_t i = 0; i <= unit; ++i) bytes *= 1024;
+  }
+  try {
+    bytes *= to_number(option, number);
+  } catch (const CLI::ValidationError&) {
+    bytes = 0;
+  }
+  if (!(bytes >= 1 && bytes <= kMost)) refuse_value(option, text, "bytes, such as 512M or 4G");
+  return static_cast<int64_t>(bytes);
+}
+
 std::vector<double> to_numbers(const std::string& option, const std::string& text, size_t count) {
   return parse_list<double>(option, text, count, "number");
 }

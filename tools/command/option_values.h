@@ -1,6 +1,7 @@
 // Values of command-line options, with errors that name the option, what was found and what was
 // expected. All throw CLI::ValidationError.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,9 @@ std::string text_of(double value);
 // Finite numbers only; the whole text must be one.
 double to_number(const std::string& option, const std::string& text);
 int to_integer(const std::string& option, const std::string& text);
+
+// Bytes: "4G", "512M", "100000"; K, M, G and T are powers of 1024.
+int64_t to_bytes(const std::string& option, const std::string& text);
 
 // Separated by commas. `count` 0: any number of them, at least one.
 std::vector<double> to_numbers(const std::string& option, const std::string& text, size_t count);

@@ -1,6 +1,7 @@
 #include "tools/file/memory.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 
 #include "tools/file/apart.h"
@@ -26,6 +27,15 @@ uint64_t available_memory() {
   while (file >> key >> kibibytes) {
     if (key == "MemAvailable:") return kibibytes * 1024;
     std::getline(file, unit);
+  }
+  return 0;
+}
+
+uint64_t resident_memory() {
+  std::ifstream file("/proc/self/status");
+  std::string line;
+  while (std::getline(file, line)) {
+    if (line.starts_with("VmRSS:")) return std::strtoull(line.c_str() + 6, nullptr, 10) * 1024;
   }
   return 0;
 }

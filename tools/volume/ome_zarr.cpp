@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -15,6 +14,7 @@
 #include "tools/file/printable.h"
 #include "tools/volume/volume_io_formats.h"
 #include "tools/volume/volume_io_memory.h"
+#include "tools/volume/zarr_gather.h"
 #include "tools/volume/zarr_json.h"
 
 namespace plc::tools {
@@ -187,71 +187,6 @@ void set_dims(OmeZarrImage& image) {
   image.header.component = image.array.component;
 }
 
-// A part of the volume: how the values of a chunk lie in it.
-class Gather {
- public:
-  explicit Gather(const OmeZarrImage& image, std::byte* voxels)
-      : image_(image), voxels_(voxels), size_(component_size(image.array.component)) {
-    size_t next = size_;
-    step_.assign(image.array.shape.size(), 0);
-    for (size_t i = 0; i < 3; ++i) {
-      step_[image.space[i]] = next;
-      next *= static_cast<size_t>(image.header.dims[i]);
-    }
-  }
-
-  // chunk: null where all values are the fill value.
-  void put(const std::vector<int64_t>& index, const std::byte* chunk) const {
-    const ZarrArray& array = image_.array;
-    const size_t axes = array.shape.size();
-    std::vector<int64_t> length(axes), at(axes, 0);
-    std::vector<size_t> from_step(axes);
-    size_t next = size_, to = 0, from = 0;
-    for (size_t axis = axes; axis-- > 0;) {
-      const int64_t first = index[axis] * array.chunk[axis];
-      length[axis] = std::min(array.chunk[axis], array.shape[axis] - first);
-      to += step_[axis] * static_cast<size_t>(first);
-      from_step[axis] = next;
-      next *= static_cast<size_t>(array.chunk[axis]);
-    }
-    const size_t run_axis = axes - 1;
-    const auto run = static_cast<size_t>(length[run_axis]);
-    for (;;) {
-      put_run(chunk == nullptr ? nullptr : chunk + from, from_step[run_axis], voxels_ + to,
-              step_[run_axis], run);
-      size_t axis = run_axis;
-      for (;;) {
-        if (axis == 0) return;
-        --axis;
-        to += step_[axis];
-        from += from_step[axis];
-        if (++at[axis] < length[axis]) break;
-        to -= step_[axis] * static_cast<size_t>(length[axis]);
-        from -= from_step[axis] * static_cast<size_t>(length[axis]);
-        at[axis] = 0;
-      }
-    }
-  }
-
- private:
-  void put_run(const std::byte* from, size_t from_step, std::byte* to, size_t to_step,
-               size_t count) const {
-    if (from != nullptr && from_step == size_ && to_step == size_) {
-      std::memcpy(to, from, count * size_);
-      return;
-    }
-    for (size_t i = 0; i < count; ++i) {
-      std::memcpy(to + i * to_step,
-                  from == nullptr ? image_.array.fill.data() : from + i * from_step, size_);
-    }
-  }
-
-  const OmeZarrImage& image_;
-  std::byte* voxels_;
-  size_t size_;
-  std::vector<size_t> step_;  // in the volume, of each axis of the array; 0 where it has one place
-};
-
 // The chunks of the array by numbers.
 class ChunkGrid {
  public:
@@ -360,7 +295,9 @@ LoadedVolume read_ome_zarr(const ZarrStore& store, const OmeZarrImage& image, in
   const ChunkGrid grid(image.array);
   require_chunks(store, image, grid);
   SharedBytes voxels = allocate_voxels(name, image.header);
-  const Gather gather(image, voxels.data());
+  VoxelBox all{};
+  for (size_t i = 0; i < 3; ++i) all.high[i] = image.header.dims[i] - 1;
+  const ZarrGather gather(image, all, voxels.data());
   const uint64_t count = grid.count();
   const bool fill_is_zero = std::all_of(image.array.fill.begin(), image.array.fill.end(),
                                         [](std::byte b) { return b == std::byte{0}; });

@@ -1,5 +1,6 @@
 #include "tools/volume/volume_box.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "tools/file/failure.h"
@@ -23,20 +24,30 @@ std::string text_of(const VoxelBox& box) {
 
 }  // namespace
 
-LoadedVolume cut_out(const std::string& path, const LoadedVolume& volume, const VoxelBox& box) {
-  const plc_image& whole = volume.image;
-  int64_t dims[3];
+plc_image image_of_box(const std::string& path, const plc_image& whole, const VoxelBox& box) {
+  plc_image part = whole;
+  part.voxels = nullptr;
   for (size_t axis = 0; axis < 3; ++axis) {
     if (box.low[axis] < 0 || box.high[axis] >= whole.dims[axis] ||
         box.high[axis] <= box.low[axis]) {
       throw Failure{path + ": the box " + text_of(box) + " is not two voxels or more along each " +
                     "axis of its " + dims_text(whole.dims)};
     }
-    dims[axis] = box.high[axis] - box.low[axis] + 1;
+    part.dims[axis] = box.high[axis] - box.low[axis] + 1;
   }
-  LoadedVolume part = make_volume(path, whole.type, dims);
+  const Place origin =
+      lps_of(whole, {static_cast<double>(box.low[0]), static_cast<double>(box.low[1]),
+                     static_cast<double>(box.low[2])});
+  std::copy(origin.begin(), origin.end(), part.origin);
+  return part;
+}
+
+LoadedVolume cut_out(const std::string& path, const LoadedVolume& volume, const VoxelBox& box) {
+  const plc_image& whole = volume.image;
+  const plc_image image = image_of_box(path, whole, box);
+  LoadedVolume part = make_volume(path, whole.type, image.dims);
   const auto size = static_cast<int64_t>(voxel_size(whole.type));
-  const auto row = static_cast<size_t>(dims[0] * size);
+  const auto row = static_cast<size_t>(image.dims[0] * size);
   std::byte* to = part.bytes.data();
   for (int64_t z = box.low[2]; z <= box.high[2]; ++z) {
     for (int64_t y = box.low[1]; y <= box.high[1]; ++y, to += row) {
@@ -44,14 +55,9 @@ LoadedVolume cut_out(const std::string& path, const LoadedVolume& volume, const 
       std::memcpy(to, volume.bytes.data() + first * size, row);
     }
   }
-  const Place origin =
-      lps_of(whole, {static_cast<double>(box.low[0]), static_cast<double>(box.low[1]),
-                     static_cast<double>(box.low[2])});
-  for (size_t k = 0; k < 3; ++k) {
-    part.image.spacing[k] = whole.spacing[k];
-    part.image.origin[k] = origin[k];
-  }
-  std::memcpy(part.image.direction, whole.direction, sizeof whole.direction);
+  const void* voxels = part.image.voxels;
+  part.image = image;
+  part.image.voxels = voxels;
   part.warnings = volume.warnings;
   return part;
 }

@@ -13,8 +13,11 @@ struct VoxelBox {
   std::array<int64_t, 3> low, high;
 };
 
-// The voxels of the box alone, where they lie. `path` is for messages. Throws Failure where the box
-// reaches beyond the volume or has fewer than two voxels along an axis.
+// Where the box lies; of an image without voxels. `path` is for messages. Throws Failure where the
+// box reaches beyond the volume or has fewer than two voxels along an axis.
+plc_image image_of_box(const std::string& path, const plc_image& whole, const VoxelBox& box);
+
+// The voxels of the box alone, where they lie. Throws Failure.
 LoadedVolume cut_out(const std::string& path, const LoadedVolume& volume, const VoxelBox& box);
 
 }  // namespace plc::tools

@@ -57,13 +57,11 @@ LoadedVolume converted_integers(const std::string& path, const int64_t dims[3],
   return volume;
 }
 
-LoadedVolume as_they_are(plc_voxel_type type, const int64_t dims[3], SharedBytes voxels) {
+LoadedVolume as_they_are(const ItkHeader& header, plc_voxel_type type, SharedBytes voxels) {
   LoadedVolume volume;
   volume.bytes = std::move(voxels);
-  volume.image.struct_size = sizeof(plc_image);
-  volume.image.type = type;
+  volume.image = image_from(header, type);
   volume.image.voxels = volume.bytes.data();
-  std::copy(dims, dims + 3, volume.image.dims);
   return volume;
 }
 
@@ -94,6 +92,17 @@ ItkHeader checked_header(const std::string& path, ItkHeader header) {
   return header;
 }
 
+plc_image image_from(const ItkHeader& header, plc_voxel_type type) {
+  plc_image image{};
+  image.struct_size = sizeof image;
+  image.type = type;
+  std::copy_n(header.dims.data(), 3, image.dims);
+  std::copy_n(header.spacing, 3, image.spacing);
+  std::copy_n(header.origin, 3, image.origin);
+  std::copy_n(header.direction, 9, image.direction);
+  return image;
+}
+
 SharedBytes allocate_voxels(const std::string& path, const ItkHeader& header) {
   const auto count = static_cast<uint64_t>(checked_voxel_count(path, header.dims.data()));
   const uint64_t bytes = count * component_size(header.component);
@@ -114,19 +123,19 @@ LoadedVolume volume_from(const std::string& path, const ItkHeader& header, Share
   LoadedVolume volume;
   switch (header.component) {
     case ItkComponent::kU8:
-      volume = as_they_are(PLC_U8, dims, std::move(voxels));
+      volume = as_they_are(header, PLC_U8, std::move(voxels));
       break;
     case ItkComponent::kI16:
-      volume = as_they_are(PLC_I16, dims, std::move(voxels));
+      volume = as_they_are(header, PLC_I16, std::move(voxels));
       break;
     case ItkComponent::kU16:
-      volume = as_they_are(PLC_U16, dims, std::move(voxels));
+      volume = as_they_are(header, PLC_U16, std::move(voxels));
       break;
     case ItkComponent::kI32:
-      volume = as_they_are(PLC_I32, dims, std::move(voxels));
+      volume = as_they_are(header, PLC_I32, std::move(voxels));
       break;
     case ItkComponent::kF32:
-      volume = as_they_are(PLC_F32, dims, std::move(voxels));
+      volume = as_they_are(header, PLC_F32, std::move(voxels));
       break;
     case ItkComponent::kI8:
       volume = make_volume(path, PLC_I16, dims);
@@ -146,9 +155,9 @@ LoadedVolume volume_from(const std::string& path, const ItkHeader& header, Share
       convert<double, float>(voxels, volume);
       break;
   }
-  std::copy(header.spacing, header.spacing + 3, volume.image.spacing);
-  std::copy(header.origin, header.origin + 3, volume.image.origin);
-  std::copy(header.direction, header.direction + 9, volume.image.direction);
+  const void* first = volume.image.voxels;
+  volume.image = image_from(header, volume.image.type);
+  volume.image.voxels = first;
   return volume;
 }
 
@@ -185,8 +194,8 @@ LoadedVolume read_volume(const std::string& path, NiftiFrame frame) {
   return read_itk_volume(path, format->second);
 }
 
-void print_warnings(const LoadedVolume& volume) {
-  for (const std::string& line : volume.warnings) {
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& line : warnings) {
     std::fprintf(stderr, "pellicle: %s\n", line.c_str());
   }
 }

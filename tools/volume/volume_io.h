@@ -25,8 +25,8 @@ LoadedVolume read_volume(const std::string& path, NiftiFrame frame = NiftiFrame:
 // commands use. Before the process starts threads; see apart.h.
 LoadedVolume read_volume_apart(const std::string& path, NiftiFrame frame = NiftiFrame::kAuto);
 
-// Its warnings to stderr, a line each.
-void print_warnings(const LoadedVolume& volume);
+// Warnings to stderr, a line each.
+void print_warnings(const std::vector<std::string>& warnings);
 
 // .nrrd, .mha, .mhd or .zarr by suffix; atomically. Throws Failure.
 void write_volume(const std::string& path, const plc_image& image);

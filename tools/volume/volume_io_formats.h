@@ -22,6 +22,9 @@ LoadedVolume read_nifti(const std::string& path, NiftiFrame frame);
 // as f32; f64 as f32; the others as they are. Geometry from the header (its first three axes).
 LoadedVolume volume_from(const std::string& path, const ItkHeader& header, SharedBytes voxels);
 
+// An image of the header's geometry, without voxels.
+plc_image image_from(const ItkHeader& header, plc_voxel_type type);
+
 // Memory for the header's voxels as they are in the file; Failure where what they and their
 // conversion need is not there.
 SharedBytes allocate_voxels(const std::string& path, const ItkHeader& header);

@@ -10,6 +10,7 @@
 
 #include "tools/file/failure.h"
 #include "tools/file/text.h"
+#include "tools/volume/flat_file.h"
 #include "tools/volume/nifti_header.h"
 #include "tools/volume/volume_io_formats.h"
 #include "tools/volume/volume_io_size.h"
@@ -177,18 +178,41 @@ void require_finite(const std::string& path, const SharedBytes& voxels) {
   }
 }
 
+// Of the voxels as they become.
+ItkHeader header_of(const std::string& path, const NiftiHeader& nifti, const StoredVoxels& stored,
+                    NiftiFrame frame, std::vector<std::string>& warnings) {
+  ItkHeader header;
+  const bool floats = stored.scaled() && stored.component != ItkComponent::kF64;
+  header.component = floats ? ItkComponent::kF32 : stored.component;
+  header.dims = nifti.dims;
+  warnings = place_nifti(path, nifti, frame, header);
+  return checked_header(path, std::move(header));
+}
+
 }  // namespace
+
+std::optional<FlatFile> flat_nifti(const std::string& path, NiftiFrame frame, ItkHeader& header,
+                                   std::vector<std::string>& warnings) {
+  const NiftiHeader nifti = read_nifti_header(path);
+  FlatFile file{
+      path,
+      nifti.offset,
+      {stored_component(path, nifti.datatype), nifti.big_endian, nifti.slope, nifti.intercept}};
+  header = header_of(path, nifti, file.stored, frame, warnings);
+  const GzFile gz(gzopen(path.c_str(), "rb"), gzclose);
+  if (gz == nullptr) throw Failure{path + ": cannot be read"};
+  if (gzdirect(gz.get()) == 0) return std::nullopt;
+  return file;
+}
 
 LoadedVolume read_nifti(const std::string& path, NiftiFrame frame) {
   static_assert(std::endian::native == std::endian::little);
   const NiftiHeader nifti = read_nifti_header(path);
   const ItkComponent stored = stored_component(path, nifti.datatype);
-  const bool scaled = nifti.slope != 1 || nifti.intercept != 0;
-  ItkHeader header;
-  header.component = scaled && stored != ItkComponent::kF64 ? ItkComponent::kF32 : stored;
-  header.dims = nifti.dims;
-  std::vector<std::string> warnings = place_nifti(path, nifti, frame, header);
-  header = checked_header(path, std::move(header));
+  const StoredVoxels how{stored, nifti.big_endian, nifti.slope, nifti.intercept};
+  const bool scaled = how.scaled();
+  std::vector<std::string> warnings;
+  const ItkHeader header = header_of(path, nifti, how, frame, warnings);
   check_size(path, nifti, product_of(header.dims, component_size(stored)));
   SharedBytes voxels = allocate_voxels(path, header);
   Reader reader(path, nifti);

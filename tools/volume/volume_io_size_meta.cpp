@@ -8,6 +8,7 @@
 
 #include "tools/file/failure.h"
 #include "tools/file/printable.h"
+#include "tools/volume/flat_file.h"
 #include "tools/volume/volume_io_size.h"
 
 namespace plc::tools {
@@ -38,6 +39,10 @@ Fields meta_fields(std::ifstream& file) {
 
 bool is_true(const std::string& value) {
   return !value.empty() && (value[0] == 'T' || value[0] == 't' || value[0] == '1');
+}
+
+bool is_local(const std::string& data_name) {
+  return data_name == "LOCAL" || data_name == "Local" || data_name == "local";
 }
 
 // A number of the header, `fallback` where it has none of that name.
@@ -117,12 +122,34 @@ void check_meta_axes(const std::string& path) {
   if (axes > kMost) throw Failure{path + ": is " + printable(text) + "-D; a 3-D volume is needed"};
 }
 
+std::optional<FlatFile> flat_meta(const std::string& path, const ItkHeader& header) {
+  std::ifstream file(path, std::ios::binary);
+  Fields fields = meta_fields(file);
+  const std::string name = fields["ElementDataFile"];
+  const bool text = fields.count("BinaryData") != 0 && !is_true(fields["BinaryData"]);
+  const bool skips = !fields["HeaderSize"].empty() && fields["HeaderSize"] != "0";
+  const bool several = name.starts_with("LIST") || name.find('%') != std::string::npos;
+  if (name.empty() || text || several || skips || is_true(fields["CompressedData"])) {
+    return std::nullopt;
+  }
+  FlatFile flat{path, 0, {}};
+  if (is_local(name)) {
+    flat.offset = static_cast<uint64_t>(file.tellg());
+  } else {
+    flat.path = beside(path, name);
+  }
+  flat.stored.component = header.component;
+  flat.stored.big_endian =
+      is_true(fields["BinaryDataByteOrderMSB"]) || is_true(fields["ElementByteOrderMSB"]);
+  return flat;
+}
+
 void check_meta_size(const std::string& path, const ItkHeader& header) {
   std::ifstream file(path, std::ios::binary);
   Fields fields = meta_fields(file);
   const std::string data_name = fields["ElementDataFile"];
   if (data_name.empty()) throw Failure{path + ": is truncated (its header has no end)"};
-  const bool local = data_name == "LOCAL" || data_name == "Local" || data_name == "local";
+  const bool local = is_local(data_name);
   const bool text = fields.count("BinaryData") != 0 && !is_true(fields["BinaryData"]);
   // As text a voxel takes a digit, and a space before the next one.
   const uint64_t needed = text ? product_of(header.dims, 2) - 1 : voxel_bytes(header);

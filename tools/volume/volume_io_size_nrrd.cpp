@@ -7,6 +7,7 @@
 
 #include "tools/file/failure.h"
 #include "tools/file/printable.h"
+#include "tools/volume/flat_file.h"
 #include "tools/volume/volume_io_size.h"
 
 namespace plc::tools {
@@ -94,7 +95,27 @@ void check_axes(const std::string& path, const std::string& sizes) {
   if (!words.eof()) throw Failure{path + ": its sizes are \"" + printable(sizes) + "\", too large"};
 }
 
+bool is_none(const std::string& number) {
+  return number.empty() || number == "0";
+}
+
 }  // namespace
+
+std::optional<FlatFile> flat_nrrd(const std::string& path, const ItkHeader& header) {
+  std::ifstream file(path, std::ios::binary);
+  NrrdHeader nrrd = nrrd_header(file);
+  check_axes(path, nrrd.fields["sizes"]);
+  const std::string data = nrrd.fields["datafile"];
+  const bool several = data.starts_with("LIST") || is_numbered_name(data.substr(0, data.find(' ')));
+  if (nrrd.fields["encoding"] != "raw" || several || !is_none(nrrd.fields["lineskip"]) ||
+      !is_none(nrrd.fields["byteskip"])) {
+    return std::nullopt;
+  }
+  FlatFile flat{data.empty() ? path : beside(path, data), data.empty() ? nrrd.size : 0, {}};
+  flat.stored.component = header.component;
+  flat.stored.big_endian = nrrd.fields["endian"] == "big";
+  return flat;
+}
 
 void check_nrrd_size(const std::string& path, const ItkHeader& header) {
   std::ifstream file(path, std::ios::binary);

@@ -51,13 +51,14 @@ double value_of(uint32_t key) {
 constexpr int kHalf = 16;
 
 template <typename T>
-std::vector<double> order_statistics(const T* first, const T* last,
-                                     const std::vector<int64_t>& ranks) {
+std::vector<double> order_statistics(const Voxels& voxels, const std::vector<int64_t>& ranks) {
   constexpr bool kOneHalf = sizeof(T) < 4;
   std::vector<int64_t> upper(kBins, 0);
-  for (const T* v = first; v != last; ++v) {
-    if (is_finite(*v)) ++upper[kOneHalf ? key_of(*v) : key_of(*v) >> kHalf];
-  }
+  voxels.visit([&](const auto* first, const auto* last) {
+    for (const auto* v = first; v != last; ++v) {
+      if (is_finite(*v)) ++upper[kOneHalf ? key_of(*v) : key_of(*v) >> kHalf];
+    }
+  });
   std::vector<double> values;
   std::vector<int64_t> lower;
   size_t counted = kBins;  // the upper half that `lower` is of
@@ -69,10 +70,12 @@ std::vector<double> order_statistics(const T* first, const T* last,
     if constexpr (!kOneHalf) {
       if (bin != counted) {
         lower.assign(kBins, 0);
-        for (const T* v = first; v != last; ++v) {
-          const uint32_t k = key_of(*v);
-          if (is_finite(*v) && k >> kHalf == bin) ++lower[k & (kBins - 1)];
-        }
+        voxels.visit([&](const auto* first, const auto* last) {
+          for (const auto* v = first; v != last; ++v) {
+            const uint32_t k = key_of(*v);
+            if (is_finite(*v) && k >> kHalf == bin) ++lower[k & (kBins - 1)];
+          }
+        });
         counted = bin;
       }
       size_t low = 0;
@@ -90,12 +93,12 @@ struct Histogram {
   double width;
 };
 
-Histogram histogram_of(const plc_image& image, const VolumeRange& range) {
-  const bool whole = image.type != PLC_F32 && range.high - range.low < kBins;
+Histogram histogram_of(const Voxels& voxels, const VolumeRange& range) {
+  const bool whole = voxels.type() != PLC_F32 && range.high - range.low < kBins;
   const size_t bins = whole ? static_cast<size_t>(range.high - range.low) + 1 : kBins;
   const double width = whole ? 1 : (range.high - range.low) / kBins;
   Histogram histogram{std::vector<int64_t>(bins, 0), range.low + (whole ? 0.5 : width), width};
-  with_voxels(image, [&](const auto* first, const auto* last) {
+  voxels.visit([&](const auto* first, const auto* last) {
     for (const auto* v = first; v != last; ++v) {
       if (!is_finite(*v)) continue;
       const double place = (static_cast<double>(*v) - range.low) / width;
@@ -123,10 +126,10 @@ const char* voxel_type_name(plc_voxel_type type) {
   return "?";
 }
 
-VolumeRange range_of(const plc_image& image) {
+VolumeRange range_of(const Voxels& voxels) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  return with_voxels(image, [](const auto* first, const auto* last) {
-    VolumeRange range{kNan, kNan, 0, 0};
+  VolumeRange range{kNan, kNan, 0, 0};
+  voxels.visit([&range](const auto* first, const auto* last) {
     for (const auto* v = first; v != last; ++v) {
       if (!is_finite(*v)) {
         ++range.not_finite;
@@ -137,12 +140,12 @@ VolumeRange range_of(const plc_image& image) {
       range.high = std::fmax(range.high, value);
       ++range.finite;
     }
-    return range;
   });
+  return range;
 }
 
-std::vector<double> percentiles_of(const plc_image& image, const std::vector<double>& percents) {
-  const int64_t count = range_of(image).finite;
+std::vector<double> percentiles_of(const Voxels& voxels, const std::vector<double>& percents) {
+  const int64_t count = range_of(voxels).finite;
   if (count == 0) {
     return std::vector<double>(percents.size(), std::numeric_limits<double>::quiet_NaN());
   }
@@ -152,15 +155,25 @@ std::vector<double> percentiles_of(const plc_image& image, const std::vector<dou
         static_cast<int64_t>(std::ceil(percent / 100 * static_cast<double>(count))) - 1;
     ranks.push_back(std::clamp<int64_t>(rank, 0, count - 1));
   }
-  return with_voxels(image, [&](const auto* first, const auto* last) {
-    return order_statistics(first, last, ranks);
-  });
+  switch (voxels.type()) {
+    case PLC_U8:
+      return order_statistics<uint8_t>(voxels, ranks);
+    case PLC_I16:
+      return order_statistics<int16_t>(voxels, ranks);
+    case PLC_U16:
+      return order_statistics<uint16_t>(voxels, ranks);
+    case PLC_I32:
+      return order_statistics<int32_t>(voxels, ranks);
+    case PLC_F32:
+      break;
+  }
+  return order_statistics<float>(voxels, ranks);
 }
 
-double otsu_of(const plc_image& image) {
-  const VolumeRange range = range_of(image);
+double otsu_of(const Voxels& voxels) {
+  const VolumeRange range = range_of(voxels);
   if (!(range.low < range.high)) return std::numeric_limits<double>::quiet_NaN();
-  const Histogram histogram = histogram_of(image, range);
+  const Histogram histogram = histogram_of(voxels, range);
   double total = 0;
   for (size_t b = 0; b < histogram.counts.size(); ++b) {
     total += static_cast<double>(b) * static_cast<double>(histogram.counts[b]);

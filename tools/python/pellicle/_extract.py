@@ -10,17 +10,17 @@ from . import _pellicle
 from ._changes import CommonChanges
 from ._context import Context, core_of
 from ._extras import Extras, ForceFunction, LevelFunction, ProgressFunction, mesh_of
-from ._images import Image, Order, Vector, located
+from ._images import Image, Order, Vector, frame_of, located
 from ._meshes import MeshLike
 from ._parameters import Parameters, fields_of, told
 from ._records import Space
-from ._steps import chosen
+from ._steps import Volume, chosen
 from ._surface import Surface
 
 
 @told()
 def extract(
-    image: npt.ArrayLike | Image,
+    image: npt.ArrayLike | Image | Volume,
     iso: float | None = None,
     *,
     spacing: Vector = (1, 1, 1),
@@ -52,7 +52,7 @@ def extract(
         An `Image` of `read`, which tells its geometry; or an array. Three axes, no masked elements. uint8, int16, uint16, int32 and float32 are taken as they are, without a copy
         where x is fastest in memory; bool, int8, uint32, int64, uint64 and float16 are converted
         where no value changes, else refused; float64 is rounded to float32. It must not change
-        during the call.
+        during the call. Or a `Volume`, as one by bricks, which tells its order and geometry.
     iso : float, optional
         The value of the surface, in the image's units. Needed unless ``force="gradient"``.
     spacing : sequence of float
@@ -129,7 +129,12 @@ def extract(
     (True, 0)
     """
     fields, start = mesh_of(mesh, {**changes})
-    voxels, frame = located(image, order, spacing, origin, direction)
+    if isinstance(image, Volume):
+        if (order, frame_of(spacing, origin, direction)) != ("zyx", frame_of((1, 1, 1), (0, 0, 0), None)):
+            raise TypeError("a Volume tells its order and geometry")
+        frame, order = image._frame, image._order
+    else:
+        voxels, frame = located(image, order, spacing, origin, direction)
     extras = Extras(
         frame=frame,
         order=order,
@@ -147,11 +152,11 @@ def extract(
     )
     given: dict[str, Any] = {**fields, "iso": iso} if iso is not None else fields
     wanted = extras.start(chosen(parameters, iso, fields), given)
-    core = _pellicle.extract(
-        core_of(context),
-        voxels,
-        frame.core(),
-        fields_of(wanted),
-        extras.core(),
-    )
+    if isinstance(image, Volume):
+        owner = image._core.context if context is None else core_of(context)
+        core = _pellicle.extract_volume(owner, image._core, fields_of(wanted), extras.core())
+    else:
+        core = _pellicle.extract(
+            core_of(context), voxels, frame.core(), fields_of(wanted), extras.core()
+        )
     return Surface._of(core, space, frame)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple, TypedDict
+from typing import Any, Literal, NamedTuple, Protocol, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -137,6 +137,59 @@ def voxels_of(image: npt.ArrayLike, order: Order, name: str = "image") -> npt.ND
     if not array.flags.aligned or 0 in array.strides:
         array = array.copy()
     return array.transpose() if order == "zyx" else array
+
+
+class Sliced(Protocol):
+    """What a volume of bricks is read from: a zarr.Array, an h5py.Dataset, a numpy.memmap."""
+
+    @property
+    def shape(self) -> tuple[int, ...]: ...
+    @property
+    def dtype(self) -> Any: ...
+    def __getitem__(self, index: Any) -> Any: ...
+
+
+# What each type becomes that need not be looked at as a whole.
+_BY_BRICKS = {
+    "b1": "uint8", "u1": "uint8", "i1": "int16", "i2": "int16", "u2": "uint16",
+    "f2": "float32", "f4": "float32", "f8": "float32",
+}
+
+
+def brick_type(dtype: Any) -> np.dtype[Any]:
+    """That of the bricks of an array."""
+    given = np.dtype(dtype)
+    if (name := _BY_BRICKS.get(f"{given.kind}{given.itemsize}")) is None:
+        raise TypeError(f"array: voxels of type {given} are not read by bricks")
+    return np.dtype(name)
+
+
+def brick_reader(
+    array: Sliced, order: Order, dtype: np.dtype[Any]
+) -> Callable[[list[int], list[int]], npt.NDArray[Any]]:
+    """Gives the voxels from low to high, both x, y, z, indexed [z, y, x]."""
+
+    def read(low: list[int], high: list[int]) -> npt.NDArray[Any]:
+        box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
+        part = array[box[::-1] if order == "zyx" else box]
+        part = plain_array(part, "array")
+        if part.dtype.kind == "f" and part.dtype.itemsize == 8:
+            part = _typed(part, "array")
+        return np.ascontiguousarray(part if order == "zyx" else part.transpose(), dtype)
+
+    return read
+
+
+def brick_of(array: Sliced, dims: Sequence[int], order: Order) -> tuple[int, ...]:
+    """Voxels along x, y, z of bricks that are best read at once: whole chunks."""
+    chunks = getattr(array, "chunks", None)
+    if not (
+        isinstance(chunks, tuple) and len(chunks) == 3 and all(isinstance(n, int) for n in chunks)
+    ):
+        return (64, 64, 64)
+    if order == "zyx":
+        chunks = chunks[::-1]
+    return tuple(-(-max(32, n) // n) * n for n in chunks)
 
 
 def _typed(array: npt.NDArray[Any], name: str) -> npt.NDArray[Any]:

@@ -38,6 +38,14 @@ class Range(NamedTuple):
     high: float
 
 
+class BrickCounts(NamedTuple):
+    """Bricks of a volume."""
+
+    bricks: int
+    read: int
+    read_again: int
+
+
 @dataclass(frozen=True)
 class Progress:
     """How far an evolution has come.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any, Literal, Unpack
 
@@ -13,10 +14,20 @@ from ._changes import PyramidChanges, RunChanges
 from ._context import Context, core_of
 from ._errors import InvalidArgument
 from ._extras import Extras, ForceFunction, LevelFunction, ProgressFunction, mesh_of
-from ._images import Image, Order, Vector, located
+from ._images import (
+    Image,
+    Order,
+    Sliced,
+    Vector,
+    brick_of,
+    brick_reader,
+    brick_type,
+    frame_of,
+    located,
+)
 from ._meshes import MeshLike
 from ._parameters import Parameters, fields_of, told
-from ._records import Progress, PyramidLevel, Range, Space
+from ._records import BrickCounts, Progress, PyramidLevel, Range, Space
 from ._surface import Surface
 from ._values import integer
 
@@ -66,6 +77,70 @@ class Volume:
             given, self._core.voxels(), max_work=1
         )
 
+    @classmethod
+    def by_bricks(
+        cls,
+        array: Sliced,
+        *,
+        brick: Sequence[int] | None = None,
+        cache: int = 0,
+        spacing: Vector = (1, 1, 1),
+        origin: Vector = (0, 0, 0),
+        direction: npt.ArrayLike | None = None,
+        order: Order = "zyx",
+        context: Context | None = None,
+    ) -> Volume:
+        """An image that memory does not hold, read slice by slice as it is needed.
+
+        `extract`, `Pyramid` and `Run` give the same bits as of the array as a whole.
+
+        Parameters
+        ----------
+        array : zarr.Array, h5py.Dataset, numpy.memmap ...
+            Whatever has a shape of three axes, a dtype and gives arrays for slices. It is asked in
+            any thread, one at a time, and must not change. bool, int8, uint8, int16, uint16 and
+            floats; float16 and float64 become float32, int8 becomes int16.
+        brick : sequence of int, optional
+            Voxels along x, y, z of what is read at once, 16 to 4096. Where it is left out, whole
+            chunks of the array, or 64.
+        cache : int
+            Bytes that bricks may take. 0: half of the context's `memory_limit`, or 1 GiB where
+            that is 0.
+        spacing, origin, direction, order
+            As in `extract`.
+        context : Context, optional
+            Also of what is made from the volume, unless told otherwise.
+        """
+        if order not in ("zyx", "xyz"):
+            raise ValueError(f"order {order!r}: must be 'zyx' or 'xyz'")
+        if len(array.shape) != 3:
+            raise ValueError(f"array: must have three axes, not {len(array.shape)}")
+        shape = array.shape[::-1] if order == "zyx" else array.shape
+        dims = [integer(n, "array") for n in shape]
+        sides = brick_of(array, dims, order) if brick is None else brick
+        if len(sides) != 3:
+            raise ValueError("brick: must be three numbers: x, y, z")
+        volume = cls.__new__(cls)
+        volume._order = order
+        volume._frame = frame_of(spacing, origin, direction)
+        volume._borrowed = True
+        dtype = brick_type(array.dtype)
+        volume._core = _pellicle.volume_create_bricks(
+            core_of(context),
+            brick_reader(array, order, dtype),
+            dtype,
+            dims,
+            [integer(n, "brick") for n in sides],
+            volume._frame.core(),
+            integer(cache, "cache"),
+        )
+        return volume
+
+    @property
+    def brick_counts(self) -> BrickCounts:
+        """Of a volume by bricks: how many there are, were read, and were read again."""
+        return BrickCounts(*self._core.brick_counts())
+
     @property
     def context(self) -> Context:
         """The one that the volume was made with."""
@@ -78,7 +153,13 @@ class Volume:
 
     @property
     def voxels(self) -> npt.NDArray[Any]:
-        """The voxels, indexed as the image was, not copied and not writable."""
+        """The voxels, indexed as the image was, not copied and not writable.
+
+        Raises
+        ------
+        InvalidArgument
+            For a volume by bricks.
+        """
         voxels = self._core.voxels()
         return voxels.transpose() if self._order == "zyx" else voxels
 

@@ -6,15 +6,6 @@ namespace plc::python {
 
 namespace {
 
-plc_voxel_type voxel_type_of(const py::array& voxels) {
-  if (py::isinstance<py::array_t<uint8_t>>(voxels)) return PLC_U8;
-  if (py::isinstance<py::array_t<int16_t>>(voxels)) return PLC_I16;
-  if (py::isinstance<py::array_t<uint16_t>>(voxels)) return PLC_U16;
-  if (py::isinstance<py::array_t<int32_t>>(voxels)) return PLC_I32;
-  if (py::isinstance<py::array_t<float>>(voxels)) return PLC_F32;
-  throw py::type_error("voxels must be uint8, int16, uint16, int32 or float32");
-}
-
 py::dtype dtype_of(plc_voxel_type type) {
   switch (type) {
     case PLC_U8:
@@ -33,6 +24,13 @@ py::dtype dtype_of(plc_voxel_type type) {
 
 }  // namespace
 
+plc_voxel_type voxel_type_of(const py::dtype& type) {
+  for (const plc_voxel_type known : {PLC_U8, PLC_I16, PLC_U16, PLC_I32, PLC_F32}) {
+    if (type.equal(dtype_of(known))) return known;
+  }
+  throw py::type_error("voxels must be uint8, int16, uint16, int32 or float32");
+}
+
 plc_image image_of(const Geometry& geometry) {
   plc_image image;
   plc_image_defaults(&image);
@@ -45,7 +43,7 @@ plc_image image_of(const Geometry& geometry) {
 plc_image image_of(const py::array& voxels, const Geometry& geometry) {
   if (voxels.ndim() != 3) throw py::value_error("voxels must have three axes");
   plc_image image = image_of(geometry);
-  image.type = voxel_type_of(voxels);
+  image.type = voxel_type_of(voxels.dtype());
   image.voxels = voxels.data();
   bool packed = true;  // x fastest, no gaps: told by strides of 0
   int64_t next = voxels.itemsize();

@@ -1,0 +1,43 @@
+// The image that `extract` works on: in memory, or by bricks.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "tools/command/engine_handles.h"
+#include "tools/command/extract_options.h"
+#include "tools/volume/brick_source.h"
+#include "tools/volume/volume_io.h"
+#include "tools/volume/voxels.h"
+
+namespace plc::tools {
+
+class ExtractVolume {
+ public:
+  // By bricks where --memory is given and the file can be read so. Before there are threads. Tells
+  // the image's warnings; throws Failure.
+  explicit ExtractVolume(const ExtractOptions& options);
+
+  // Of the region of --box; voxels is NULL where they come by bricks.
+  const plc_image& image() const { return source_ ? source_->image() : loaded_.image; }
+  // The image without --box.
+  const plc_image& whole() const { return whole_; }
+  Voxels voxels() const { return source_ ? Voxels(*source_) : Voxels(loaded_.image); }
+
+  // plc_extract. The context must outlive this.
+  plc_status extract(plc_context* context, const plc_parameters& parameters,
+                     const plc_extras& extras, plc_surface** surface);
+  // Of an image by bricks that has been extracted from.
+  std::optional<plc_brick_counts> brick_counts(plc_context* context) const;
+
+ private:
+  std::unique_ptr<BrickSource> source_;
+  LoadedVolume loaded_;
+  plc_image whole_{};
+  VolumeHandle volume_;  // of the source
+};
+
+// Of the context: what --memory leaves of it for the engine, and what the machine has. Throws
+// Failure.
+int64_t memory_limit(const ExtractOptions& options);
+
+}  // namespace plc::tools
