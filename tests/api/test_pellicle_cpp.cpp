@@ -179,3 +179,36 @@ TEST_CASE("meshes are checked and measured by the layer as by C", "[pellicle_cpp
   CHECK(pellicle::component_measures(context, nothing).components.empty());
   CHECK(status_of([&] { pellicle::distances(context, mesh, nothing); }) == PLC_INVALID_DATA);
 }
+
+TEST_CASE("a volume of bricks by the layer for C++ gives the surface of the image",
+          "[pellicle_cpp]") {
+  Scene s;
+  const pellicle::Context context(one_thread());
+  auto bricks = pellicle::defaults<plc_bricks>();
+  bricks.type = PLC_F32;
+  std::copy_n(s.image.dims, 3, bricks.dims);
+  std::copy_n(s.image.spacing, 3, bricks.spacing);
+  bricks.brick[2] = 16;
+  bricks.user = &s.image;
+  bricks.fetch = [](const int64_t at[3], void* voxels, char*, size_t, void* user) {
+    const auto& image = *static_cast<const plc_image*>(user);
+    const auto* from = static_cast<const float*>(image.voxels);
+    for (int64_t z = 16 * at[2]; z < std::min(image.dims[2], 16 * (at[2] + 1)); ++z) {
+      for (int64_t y = 0; y < image.dims[1]; ++y) {
+        std::copy_n(from + (z * image.dims[1] + y) * image.dims[0], image.dims[0],
+                    static_cast<float*>(voxels) + ((z - 16 * at[2]) * 64 + y) * 64);
+      }
+    }
+    return 0;
+  };
+  const pellicle::Volume volume(context, bricks);
+  CHECK(pellicle::extract(context, volume, s.parameters).hash() ==
+        pellicle::extract(context, s.image, s.parameters).hash());
+  CHECK(volume.brick_counts().bricks == 2);
+  CHECK(status_of([&] {
+          const pellicle::Volume plain(context, s.image);
+          (void)plain.brick_counts();
+        }) == PLC_INVALID_ARGUMENT);
+  bricks.fetch = nullptr;
+  CHECK(status_of([&] { const pellicle::Volume none(context, bricks); }) == PLC_INVALID_ARGUMENT);
+}
