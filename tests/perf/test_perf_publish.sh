@@ -35,15 +35,16 @@ touch perf/results/anything  # is no source
 ends 9 perf/run --publish kernels
 echo '# changed' >>perf/compare
 ends 9 perf/run kernels
-for command in perf/wasm perf/instructions "tools/compilers windows"; do
+for command in perf/wasm perf/instructions perf/bricks perf/labels "tools/compilers windows"; do
   # shellcheck disable=SC2086
   ends 9 $command
 done
 for command in "perf/run --publish kernels" "perf/run --publish --join" "perf/experiments chain" \
-  "perf/wasm --publish" "perf/instructions --publish" "tools/compilers --publish windows"; do
+  "perf/wasm --publish" "perf/instructions --publish" "perf/bricks --publish" "perf/labels --publish" \
+  "tools/compilers --publish windows"; do
   # shellcheck disable=SC2086
   ends 2 $command
-  grep -qE '^(run|experiments|wasm|instructions|compilers): the sources differ from commit [0-9a-f]+: commit them first$' lines ||
+  grep -qE '^(run|experiments|wasm|instructions|bricks|labels|compilers): the sources differ from commit [0-9a-f]+: commit them first$' lines ||
     fail "$command: $(cat lines)"
 done
 ends 9 env RESULTS=elsewhere perf/experiments chain
