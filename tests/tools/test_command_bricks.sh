@@ -51,6 +51,9 @@ refused "nothing" "--memory" "$pellicle" extract image.nrrd --iso 500 -o out/mes
 refused "too little" "--memory" "$pellicle" extract image.nrrd --iso 500 -o out/mesh.ply --memory 1M
 refused "no room for the surface" "memory" \
   "$pellicle" extract large.ome.zarr --iso 500 -o out/mesh.ply --memory 100M
+phantom labels --size 60 -o labels.nrrd
+works "labels" 0 "$pellicle" extract --labels labels.nrrd --merged labels.ply --memory 200M
+refused "labels, too little" "memory" "$pellicle" extract --labels labels.nrrd --merged out/labels.ply --memory 1M
 # A chunk that cannot be unpacked.
 chunk=$(find image.ome.zarr -name '[0-9]*' -type f -size +2k | sort | head -n 1)
 truncate -s 100 "$chunk"

@@ -13,6 +13,7 @@
 #include "tools/command/clock.h"
 #include "tools/command/engine_handles.h"
 #include "tools/command/extract_job.h"
+#include "tools/command/extract_volume.h"
 #include "tools/command/label_files.h"
 #include "tools/command/label_neighbours.h"
 #include "tools/command/label_overlaps.h"
@@ -87,7 +88,9 @@ class LabelExtraction {
     interrupt.end_at_once();
     volume_ = read_volume_apart(options.labels, options.nifti_frame);
     print_warnings(volume_.warnings);
-    context_ = make_context(options.context);
+    plc_context_options context = options.context;
+    if (options.memory) context.memory_limit = memory_limit(options);
+    context_ = make_context(context);
     find_names();
     for (const Label& label : find_labels(options.labels, volume_.image)) {
       pieces_.push_back({label, entry_of(label)});
