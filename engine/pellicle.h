@@ -16,11 +16,12 @@
  * used or destroyed.
  *
  * Threads: a context, and what was made with it, may be used by one thread at a time; different
- * contexts are independent and share nothing. Callbacks are made on the thread that called, but for
- * those of plc_context_options, which say so. A callback may use any handle but a run that is in
- * the middle of a call. It must not destroy the context of the call or the handles that were given
- * to it, nor leave it by an exception or longjmp. Callbacks can stop what evolves a surface; making
- * volumes, pyramids, runs and surfaces, and checking and measuring, cannot be stopped.
+ * contexts are independent and share nothing. Callbacks are made on the thread that called, but
+ * for those of plc_context_options and plc_bricks, which say so. A callback may use any handle but
+ * a run that is in the middle of a call. It must not destroy the context of the call or the
+ * handles that were given to it, nor leave it by an exception or longjmp. Callbacks can stop what
+ * evolves a surface; making volumes, pyramids, runs and surfaces, and checking and measuring,
+ * cannot be stopped.
  *
  * Structs start with struct_size: fill them with their _defaults function, then change fields. Of
  * structs that are only written it sets struct_size = sizeof, and all else to 0. A library newer

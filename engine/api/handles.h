@@ -42,13 +42,13 @@ struct Host {
   void* log_user = nullptr;
 };
 
-// In each of these the host comes first: it goes last, and with it the memory of the rest.
-
 // A host's callback could not fetch a brick.
 class BrickFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+// In each of these the host comes first: it goes last, and with it the memory of the rest.
 
 struct VolumeData {
   std::shared_ptr<Host> host;

@@ -125,7 +125,7 @@ class Extraction {
   // What the machine has not is refused in a line, before the system ends the process without one.
   plc_context_options context_options() const {
     plc_context_options context = options_.context;
-    context.memory_limit = memory_limit(options_);
+    context.memory_limit = memory_limit(options_, volume_->held() + inputs_->held());
     if (options_.progress != Progress::kNone) context.log = on_log;
     return context;
   }

@@ -89,7 +89,7 @@ class LabelExtraction {
     volume_ = read_volume_apart(options.labels, options.nifti_frame);
     print_warnings(volume_.warnings);
     plc_context_options context = options.context;
-    if (options.memory) context.memory_limit = memory_limit(options);
+    if (options.memory) context.memory_limit = memory_limit(options, volume_.bytes.size());
     context_ = make_context(context);
     find_names();
     for (const Label& label : find_labels(options.labels, volume_.image)) {

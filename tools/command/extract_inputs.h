@@ -17,6 +17,8 @@ class ExtractInputs {
   void start_from(TriangleMesh mesh) { mesh_ = std::move(mesh); }
   // Everything but callbacks. Valid as long as this lives and is not changed.
   plc_extras extras() const;
+  // Bytes of voxels in memory.
+  size_t held() const { return mask_.bytes.size(); }
 
  private:
   void move_to(const VoxelBox& box);

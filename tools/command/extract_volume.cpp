@@ -76,14 +76,15 @@ std::optional<plc_brick_counts> ExtractVolume::brick_counts(plc_context* context
   return counts;
 }
 
-int64_t memory_limit(const ExtractOptions& options) {
+int64_t memory_limit(const ExtractOptions& options, size_t held) {
   // What the process needs beside the memory that the engine counts: oneTBB and what is unpacked,
   // and a part of all for what heaps leave between their blocks.
   constexpr int64_t kOwn = int64_t{64} << 20;
   constexpr int64_t kPart = 16;
   const auto available = static_cast<int64_t>(available_memory());
   if (!options.memory) return available;
-  const int64_t own = static_cast<int64_t>(resident_memory()) + kOwn + *options.memory / kPart;
+  const int64_t own =
+      static_cast<int64_t>(unshared_memory() + held) + kOwn + *options.memory / kPart;
   const int64_t left = *options.memory - own;
   if (left <= 0) {
     throw Failure{"--memory: more is in use before the surface is begun with; give more"};

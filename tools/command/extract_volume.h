@@ -23,6 +23,9 @@ class ExtractVolume {
   const plc_image& whole() const { return whole_; }
   Voxels voxels() const { return source_ ? Voxels(*source_) : Voxels(loaded_.image); }
 
+  // Bytes of voxels in memory.
+  size_t held() const { return loaded_.bytes.size(); }
+
   // plc_extract. The context must outlive this.
   plc_status extract(plc_context* context, const plc_parameters& parameters,
                      const plc_extras& extras, plc_surface** surface);
@@ -36,8 +39,8 @@ class ExtractVolume {
   VolumeHandle volume_;  // of the source
 };
 
-// Of the context: what --memory leaves of it for the engine, and what the machine has. Throws
-// Failure.
-int64_t memory_limit(const ExtractOptions& options);
+// Of the context: what --memory leaves of it for the engine beside `held` bytes of images in
+// memory, and what the machine has. Throws Failure.
+int64_t memory_limit(const ExtractOptions& options, size_t held);
 
 }  // namespace plc::tools

@@ -31,13 +31,16 @@ uint64_t available_memory() {
   return 0;
 }
 
-uint64_t resident_memory() {
+uint64_t unshared_memory() {
   std::ifstream file("/proc/self/status");
   std::string line;
+  uint64_t kibibytes = 0;
   while (std::getline(file, line)) {
-    if (line.starts_with("VmRSS:")) return std::strtoull(line.c_str() + 6, nullptr, 10) * 1024;
+    if (line.starts_with("RssAnon:") || line.starts_with("RssFile:")) {
+      kibibytes += std::strtoull(line.c_str() + 8, nullptr, 10);
+    }
   }
-  return 0;
+  return kibibytes * 1024;
 }
 
 void require_memory(const std::string& path, uint64_t bytes) {

@@ -8,8 +8,9 @@ namespace plc::tools {
 // Bytes that the machine has left; 0 where the system does not say.
 uint64_t available_memory();
 
-// Of this process, in bytes; 0 where the system does not say.
-uint64_t resident_memory();
+// Of this process, without SharedBytes, of which it may not have touched all; in bytes, 0 where the
+// system does not say.
+uint64_t unshared_memory();
 
 // Throws Failure where the machine has not `bytes` left.
 void require_memory(const std::string& path, uint64_t bytes);
