@@ -238,8 +238,12 @@ typedef struct plc_bricks {
   void* user;
   int64_t cache; /* bytes that bricks may take; 0: half of the context's memory_limit, or 1 GiB
                     where that is 0 */
+  double low;    /* the smallest and largest voxel where the host knows them, none is NaN or */
+  double high;   /* infinite then; NAN: all are read for it. With window, pad value and level_iso
+                    given, too, no brick is read before something needs it */
 } plc_bricks;
-/* Spacing 1, origin 0, identity direction, bricks of 64 voxels, no dims, nothing to fetch. */
+/* Spacing 1, origin 0, identity direction, bricks of 64 voxels, no dims, nothing to fetch, a range
+ * that is not known. */
 PLC_API void plc_bricks_defaults(plc_bricks* bricks);
 
 /* A volume of which only some bricks are in memory, those that were read lately. A pyramid reads
@@ -510,9 +514,19 @@ typedef struct plc_extras {
   const uint32_t* obstacle_abc;
   int64_t obstacle_face_count;
   double obstacle_gap; /* 0 .. 1, in delta: what lies nearer at the start comes no nearer */
+  /* PLC_INIT_MESH: the mesh is a patch of a larger surface. One value per vertex, not 0: the vertex
+     is held. It stays where it is, to the bit, with all faces around it, and the rest evolves
+     against it; the mesh is not brought to satisfy (1)-(3) as a whole before. A patch may be open
+     where vertices of borders, and their neighbours, are held. Every border is then closed by
+     vertices of the engine's own, which the surface has, too, but without faces: see
+     plc_surface_patch(). Late bubbles start within the room alone; the run cannot be saved. */
+  const uint8_t* mesh_held;
+  /* With it: vertices move within this box alone, voxel indices of the image. */
+  double room_low[3];
+  double room_high[3];
 } plc_extras;
 
-/* Nothing, PLC_SPACE_LPS, an obstacle_gap of 0. */
+/* Nothing, PLC_SPACE_LPS, an obstacle_gap of 0, room for everything. */
 PLC_API void plc_extras_defaults(plc_extras* extras);
 
 /* ---- extraction ------------------------------------------------------------------------- */
@@ -662,6 +676,14 @@ PLC_API plc_status plc_surface_positions_f64(plc_context* context, const plc_sur
 PLC_API plc_status plc_surface_frozen_sites(plc_context* context, const plc_surface* surface,
                                             plc_space space, double* xyz, int64_t* vertices,
                                             int64_t capacity, int64_t* count);
+/* Of a surface that has evolved as a patch (mesh_held of plc_extras). source: one value per vertex:
+ * the index of the vertex of the mesh given that it is, held; PLC_PATCH_FREE: a free one;
+ * PLC_PATCH_ABSENT: it has closed a border, and has no face. Of all other surfaces every vertex is
+ * free. */
+#define PLC_PATCH_FREE (-1)
+#define PLC_PATCH_ABSENT (-2)
+PLC_API plc_status plc_surface_patch(plc_context* context, const plc_surface* surface,
+                                     int64_t* source, int64_t capacity);
 /* abc: 3 * face_count indices, counter-clockwise seen from outside in the given space. */
 PLC_API plc_status plc_surface_faces(plc_context* context, const plc_surface* surface,
                                      plc_space space, uint32_t* abc, int64_t capacity);

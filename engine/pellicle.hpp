@@ -298,6 +298,13 @@ class Surface {
     }
     return sites;
   }
+  // plc_surface_patch: of each vertex the one of the patch given that it is, or a PLC_PATCH_ value.
+  std::vector<int64_t> patch() const {
+    std::vector<int64_t> source(detail::size(plc_surface_vertex_count(get())));
+    detail::demand(context_, plc_surface_patch(context_.get(), get(), source.data(),
+                                               static_cast<int64_t>(source.size())));
+    return source;
+  }
   uint64_t hash() const { return plc_surface_hash(get()); }
   plc_measures measure(plc_space space) const {
     auto measures = defaults<plc_measures>();

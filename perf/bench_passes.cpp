@@ -318,7 +318,8 @@ void add_missed_places(Suite& suite, const Mesh& start) {
       plc::VoxelSet tried;
       return timed([&] {
         *count = plc::find_missed_places(b.mesh, {guide.image, guide.iso, true}, 3 * delta,
-                                         plc::kSmallestBubble * delta, b.schedule, tried)
+                                         plc::kSmallestBubble * delta, b.schedule, tried,
+                                         plc::whole_room(guide.image))
                      .count;
       });
     };

@@ -110,6 +110,7 @@ size_t voxels_of(const PyramidLevel& level) {
 // The first level that is built whole.
 int first_whole(const VolumeView& volume, const PyramidSpec& spec) {
   if (volume.bricks == nullptr) return 0;
+  if (spec.sparse) return spec.levels + 1;
   std::vector<int64_t> voxels;
   std::array<int64_t, 3> dims = padded_dims(volume.dims, spec.pad_voxels);
   for (int h = 0; h <= spec.levels; ++h) {

@@ -50,6 +50,7 @@ struct PyramidSpec {
   double window_low = 0, window_high = 1;  // mapped to 0 and 1, clipped; low < high
   double pad_value = 0;                    // in the image's units
   int pad_voxels = 6;                      // added on every side of I_0
+  bool sparse = false;  // of bricks: every level above I_0 is made where it is read
 };
 
 struct Pyramid {

@@ -225,7 +225,9 @@ class SizeField::Builder {
       for (int32_t y = 0; y < tiles_[1]; ++y) {
         for (int32_t x = 0; x < tiles_[0]; ++x) {
           const std::array<int32_t, 3> cell{x * kTile, y * kTile, static_cast<int32_t>(z) * kTile};
-          tile.read(image_, {cell[0] * kCell, cell[1] * kCell, cell[2] * kCell});
+          const auto& first = field_.first_;
+          tile.read(image_, {(first[0] + cell[0]) * kCell, (first[1] + cell[1]) * kCell,
+                             (first[2] + cell[2]) * kCell});
           if (!tile.crosses(iso_)) continue;
           const double noise = tile.noise();
           tile.find_tensors(half_, iso_);
@@ -291,14 +293,18 @@ class SizeField::Builder {
 };
 
 Status SizeField::build(const ImageView& image, float iso, double delta, const SizeSpec& spec,
-                        const Executor& executor) {
+                        const Executor& executor, const VoxelRoom& room) {
   double side = 1e30;  // of a cell, in delta
   size_t count = 1;
   for (size_t a = 0; a < 3; ++a) {
-    cells_[a] = (image.dims[a] + kCell - 1) / kCell;
+    // By whole tiles, the same whatever the room.
+    first_[a] = room.low[a] / (kCell * kTile) * kTile;
+    const int32_t end =
+        std::min((room.high[a] / (kCell * kTile) + 1) * kCell * kTile, image.dims[a]);
+    cells_[a] = (end + kCell - 1) / kCell - first_[a];
     count *= static_cast<size_t>(cells_[a]);
     scale_[a] = image.scale[a] / kCell;
-    offset_[a] = (image.offset[a] + 0.5F) / kCell - 0.5F;
+    offset_[a] = (image.offset[a] + 0.5F) / kCell - 0.5F - static_cast<float>(first_[a]);
     side = std::min(side, kCell / static_cast<double>(image.scale[a]) / delta);
   }
   slope_ = static_cast<float>(spec.slope);

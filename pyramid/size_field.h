@@ -11,6 +11,7 @@
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
 #include "pyramid/status.h"
+#include "pyramid/voxel_room.h"
 
 namespace plc {
 
@@ -35,9 +36,14 @@ class SizeField {
 
   // image: of the level, its scale and offset those of mesh space. delta: in mesh units. The same
   // bits for any executor. Where the iso-surface is not near, sizes are the coarsest that the slope
-  // allows. Errors: kOutOfMemory.
+  // allows. room: what alone is looked at and has sizes of its own, with up to 15 voxels around
+  // it. Errors: kOutOfMemory.
   Status build(const ImageView& image, float iso, double delta, const SizeSpec& spec,
-               const Executor& executor);
+               const Executor& executor, const VoxelRoom& room);
+  Status build(const ImageView& image, float iso, double delta, const SizeSpec& spec,
+               const Executor& executor) {
+    return build(image, iso, delta, spec, executor, whole_room(image));
+  }
 
   // By how much the size at a place of mesh space is above delta, in delta: what a mesh keeps with
   // its vertices. Trilinear between the centres of the cubes; beyond the image that of its border.
@@ -57,6 +63,7 @@ class SizeField {
   void bound_slope(const std::array<int, 4>& steps);
   void sweep(const std::array<int, 4>& steps, int direction);
 
+  std::array<int32_t, 3> first_{0, 0, 0};  // cell of the image
   std::array<int32_t, 3> cells_{0, 0, 0};
   std::array<float, 3> scale_{1, 1, 1}, offset_{0, 0, 0};  // mesh space to cells
   float slope_ = 0, finest_ = 1, coarsest_ = 1, noise_ = 0;

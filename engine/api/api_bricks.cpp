@@ -59,6 +59,10 @@ Status check_bricks(const plc_bricks& given) {
   }
   if (voxels > kMostVoxels) return bad_argument("bricks: of more than 2^26 voxels");
   if (bricks > kMostBricks) return bad_argument("bricks: more than 2^30, use larger ones");
+  if (std::isnan(given.low) != std::isnan(given.high) || given.low > given.high ||
+      std::isinf(given.low) || std::isinf(given.high)) {
+    return bad_argument("bricks: low and high must be the range of the voxels, or NAN");
+  }
   if (given.cache < 0) {
     return bad_argument("bricks: cache " + std::to_string(given.cache) +
                         ", expected 0 or more bytes");
@@ -86,6 +90,7 @@ Status make_volume(const plc_bricks& given, VolumeData& data) {
   view.type = static_cast<VoxelType>(given.type);
   view.dims = std::to_array(given.dims);
   view.spacing = data.frame.spacing;
+  if (!std::isnan(given.low)) data.range = VoxelRange{given.low, given.high, 0};
   if (!is_volume_size(view.dims) || *std::min_element(view.dims.begin(), view.dims.end()) < 2) {
     return {ErrorCode::kInvalidData, "bricks of " + voxels_text(view.dims) +
                                          ": expected at least 2 on every axis, fewer than 2^31 in "

@@ -1,4 +1,7 @@
 // The C API: the defaults of what a host fills in.
+#include <algorithm>
+#include <cmath>
+
 #include "engine/api/parameter_list.h"
 #include "engine/pellicle.h"
 
@@ -34,6 +37,7 @@ void plc_bricks_defaults(plc_bricks* bricks) {
     bricks->spacing[i] = 1;
     bricks->direction[4 * i] = 1;
   }
+  bricks->low = bricks->high = NAN;
 }
 
 void plc_brick_counts_defaults(plc_brick_counts* counts) {
@@ -60,6 +64,8 @@ void plc_extras_defaults(plc_extras* extras) {
   *extras = {};
   extras->struct_size = sizeof *extras;
   extras->space = PLC_SPACE_LPS;
+  std::fill_n(extras->room_low, 3, -HUGE_VAL);
+  std::fill_n(extras->room_high, 3, HUGE_VAL);
 }
 
 void plc_pyramid_level_defaults(plc_pyramid_level* level) {

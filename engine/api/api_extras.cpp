@@ -150,6 +150,17 @@ Status check_obstacles(const plc_extras& e, const plc_parameters& p) {
   return {};
 }
 
+Status check_patch(const plc_extras& e, const plc_parameters& p) {
+  if (e.mesh_held == nullptr) return {};
+  if (p.init != PLC_INIT_MESH) return bad_argument("mesh_held: init must be PLC_INIT_MESH with it");
+  for (int a = 0; a < 3; ++a) {
+    if (e.room_low[a] < e.room_high[a]) continue;
+    return bad_argument("room: from " + number_text(e.room_low[a]) + " to " +
+                        number_text(e.room_high[a]) + " on an axis");
+  }
+  return {};
+}
+
 constexpr double kMaxStrength = 1e6;
 
 // Of the angles between the axes x and y, y and z, z and x: 0 where only roundings part them from
@@ -193,6 +204,7 @@ Status check_extras(const plc_extras* given, const plc_parameters& p, const Volu
     if (!s.ok()) return s;
   }
   if (Status s = check_obstacles(e, p); !s.ok()) return s;
+  if (Status s = check_patch(e, p); !s.ok()) return s;
   const Bounds bounds(image, frame, e.space);
   for (int64_t i = 0; i < e.seed_count; ++i) {
     const std::string name = "seed " + std::to_string(i);
@@ -251,6 +263,11 @@ void take_extras(const plc_extras& e, const Frame& frame, RecoverySpec& spec) {
   spec.start.xyz = std::move(mesh.xyz);
   spec.start.as_given.assign(e.mesh_xyz, e.mesh_xyz + 3 * e.mesh_vertex_count);
   spec.start.abc = std::move(mesh.abc);
+  if (e.mesh_held != nullptr) {
+    spec.start.held.assign(e.mesh_held, e.mesh_held + e.mesh_vertex_count);
+    std::copy_n(e.room_low, 3, spec.room_low.begin());
+    std::copy_n(e.room_high, 3, spec.room_high.begin());
+  }
 }
 
 VoxelMesh in_voxels(const Affine& to_space, const MeshArrays& mesh) {

@@ -80,16 +80,16 @@ Status build(const std::shared_ptr<const VolumeData>& source, const plc_paramete
     volume.type = VoxelType::kF32;
     volume.voxels = pyramid.feature.data();
   }
-  pyramid.range = voxel_range(volume, host.schedule);
+  pyramid.range = source->range ? *source->range : voxel_range(volume, host.schedule);
   if (Status s = check_range(pyramid.range); !s.ok()) return s;
   double background = 0;
   if (Status s = derive_parameters(volume, pyramid.range, host.schedule, p, background); !s.ok()) {
     return s;
   }
   const double images_start = now();
-  if (Status s = build_pyramid(volume, pyramid_spec(p), host.schedule, pyramid.images); !s.ok()) {
-    return s;
-  }
+  PyramidSpec spec = pyramid_spec(p);
+  spec.sparse = source->range.has_value() && parameters.level_iso_count > 0;
+  if (Status s = build_pyramid(volume, spec, host.schedule, pyramid.images); !s.ok()) return s;
   pyramid.seconds_images = now() - images_start;
   choose_isos(volume, background, pyramid);
   close_borders(pyramid);

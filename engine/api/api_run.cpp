@@ -85,11 +85,16 @@ Status Run::prepare(std::shared_ptr<const PyramidData> pyramid, Pyramid images, 
   extras_.mask = nullptr;
   extras_.mesh_xyz = nullptr;
   extras_.mesh_abc = nullptr;
+  extras_.mesh_held = nullptr;
   extras_.attachments = nullptr;
   extras_.pins = nullptr;
   extras_.obstacle_xyz = nullptr;
   extras_.obstacle_abc = nullptr;
-  if (Status s = check_cost(images, spec); !s.ok()) return s;
+  // Of a patch the whole image would tell too much.
+  patch_ = !spec.start.held.empty();
+  if (!patch_) {
+    if (Status s = check_cost(images, spec); !s.ok()) return s;
+  }
   recovery_.emplace(std::move(images), std::move(spec), host_->schedule, hooks(), surface_->mesh,
                     surface_->records);
   surface_->seconds.struct_size = sizeof surface_->seconds;
@@ -210,6 +215,11 @@ Status Run::usable() const {
   return {};
 }
 
+Status Run::can_be_saved() const {
+  if (!patch_) return {};
+  return bad_argument("run: of a patch, which cannot be saved");
+}
+
 // What fails, or throws, ends the run; but for what was cancelled. All that the run keeps is of its
 // own host's memory, whatever context the call is made with.
 Status Run::guard(const std::function<Status()>& body) {
@@ -328,6 +338,7 @@ plc_status plc_run_restore(plc_context* context, const plc_pyramid* pyramid,
     if (state == nullptr) return plc::bad_argument("state: must not be NULL");
     std::unique_ptr<plc_run> made;
     if (Status s = new_run(context, pyramid, parameters, extras, run, made); !s.ok()) return s;
+    if (Status s = made->run.can_be_saved(); !s.ok()) return s;
     if (Status s = made->run.restore(static_cast<const uint8_t*>(state), size); !s.ok()) return s;
     *run = made.release();
     return {};
@@ -383,6 +394,7 @@ plc_status plc_run_save(plc_context* context, const plc_run* run, void* state, s
       return plc::bad_argument("run, size: must not be NULL");
     }
     if (Status s = run->run.usable(); !s.ok()) return s;
+    if (Status s = run->run.can_be_saved(); !s.ok()) return s;
     plc::StateWriter count;
     run->run.save(count);
     if (state != nullptr || capacity != 0) {

@@ -35,6 +35,7 @@ class Run {
   plc_run_state state() const;
   // Not while it is busy, nor after it has failed.
   Status usable() const;
+  Status can_be_saved() const;  // and restored
 
  private:
   Status check_cost(const Pyramid& images, const RecoverySpec& spec) const;
@@ -54,6 +55,7 @@ class Run {
   uint64_t given_hash_ = 0;          // of what extras were given for the start and on the way
   mutable std::optional<uint64_t> fingerprint_;  // once somebody has asked
   std::optional<Recovery> recovery_;
+  bool patch_ = false;
   bool failed_ = false;
   bool busy_ = false;
   double since_ = 0;  // when the call at hand began

@@ -235,6 +235,7 @@ int64_t plc_surface_vertex_count(const plc_surface* surface) {
 // A closed triangulated surface has 2 faces for 3 edges, and the valences count each edge twice.
 int64_t plc_surface_face_count(const plc_surface* surface) {
   if (surface == nullptr) return 0;
+  if (surface->mesh.is_patch()) return static_cast<int64_t>(surface->mesh.faces().size() / 3);
   int64_t ends = 0;
   for (uint32_t v = 0; v < surface->mesh.slots(); ++v) ends += surface->mesh.valence(v);
   return ends / 3;
@@ -275,6 +276,24 @@ plc_status plc_surface_frozen_sites(plc_context* context, const plc_surface* sur
           a.point({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
       xyz = std::copy(at.begin(), at.end(), xyz);
       if (vertices != nullptr) *vertices++ = site.vertices;
+    }
+    return {};
+  });
+}
+
+plc_status plc_surface_patch(plc_context* context, const plc_surface* surface, int64_t* source,
+                             int64_t capacity) {
+  return plc::guarded(context, [&]() -> Status {
+    if (Status s = plc::check_vertices(surface, PLC_SPACE_LPS, "source", source, capacity);
+        !s.ok()) {
+      return s;
+    }
+    const plc::Mesh& mesh = surface->mesh;
+    for (uint32_t v = 0; v < mesh.slots(); ++v) {
+      const uint32_t held = mesh.is_patch() ? mesh.held[v] : 0;
+      source[v] = held == 0                    ? PLC_PATCH_FREE
+                  : held == plc::Mesh::kAbsent ? PLC_PATCH_ABSENT
+                                               : int64_t{held} - 1;
     }
     return {};
   });

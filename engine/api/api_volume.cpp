@@ -224,7 +224,9 @@ plc_status plc_volume_range(plc_context* context, const plc_volume* volume, doub
     if (volume == nullptr || low == nullptr || high == nullptr) {
       return plc::bad_argument("volume, low, high: must not be NULL");
     }
-    const plc::VoxelRange range = plc::voxel_range(volume->data->view, context->host->schedule);
+    const plc::VolumeData& data = *volume->data;
+    const plc::VoxelRange range =
+        data.range ? *data.range : plc::voxel_range(data.view, context->host->schedule);
     if (Status s = plc::check_range(range); !s.ok()) return s;
     *low = range.low;
     *high = range.high;

@@ -6,6 +6,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -54,7 +55,8 @@ struct VolumeData {
   std::shared_ptr<Host> host;
   VolumeView view;
   Frame frame;
-  Buffer<uint8_t> own;  // where the voxels are not borrowed
+  Buffer<uint8_t> own;              // where the voxels are not borrowed
+  std::optional<VoxelRange> range;  // where the host has told it
 };
 
 struct PyramidData {

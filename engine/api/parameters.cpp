@@ -114,7 +114,10 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
     return {ErrorCode::kInvalidArgument, "iso " + text(p.iso) + ": outside the image's range " +
                                              text(range.low) + " .. " + text(range.high)};
   }
-  const DerivedWindow window = std::isnan(p.iso)
+  // What is given need not be looked for; of the background only derived iso-values depend.
+  const bool given =
+      !std::isnan(p.window_low) && !std::isnan(p.window_high) && p.level_iso_count > 0;
+  const DerivedWindow window = std::isnan(p.iso) || given
                                    ? DerivedWindow{{range.low, range.high}, range.low}
                                    : derive_window(volume, range, p.iso, above, executor);
   background = window.background;

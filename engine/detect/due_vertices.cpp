@@ -36,6 +36,9 @@ void DueVertices::list(const Vector<uint32_t>& blocks, const VertexBytes* calm, 
     for (size_t i = begin; i < end; ++i) {
       const uint32_t first = blocks[i] * kRingLanes;
       lanes_[i] = due_lanes(first, calm == nullptr ? kRestless : calm->data() + first, all);
+      for (uint32_t k = 0; k < kRingLanes && mesh_.is_patch(); ++k) {
+        if (mesh_.is_absent(first + k)) lanes_[i] &= static_cast<uint16_t>(~(1U << k));
+      }
       first_due_[task + 1] += static_cast<uint32_t>(std::popcount(lanes_[i]));
     }
   });

@@ -57,6 +57,7 @@ std::optional<Candidate> classify(const Mesh& mesh, const Neighbors& of_u, uint3
 std::optional<Candidate> pair_candidate(const Mesh& mesh, uint32_t u, uint32_t w,
                                         uint32_t iteration) {
   if (!mesh.alive(u) || !mesh.alive(w)) return std::nullopt;
+  if (mesh.is_held(u) || mesh.is_held(w)) return std::nullopt;
   const float reach = kMinApart * mesh.size_between(u, w);
   if (squared_distance(mesh.at(u), mesh.at(w)) >= reach * reach) return std::nullopt;
   const Neighbors ring = mesh.ring(u);
@@ -66,6 +67,7 @@ std::optional<Candidate> pair_candidate(const Mesh& mesh, uint32_t u, uint32_t w
 void proximity_candidates(const Mesh& mesh, const SpatialHash& hash, uint32_t u,
                           const Vector<uint32_t>& pending, uint32_t stamp, uint32_t iteration,
                           Vector<Candidate>& candidates) {
+  if (mesh.is_held(u)) return;
   const float reach = mesh.far_reach(kMinApart, mesh.size(u));
   const Vec3 p = mesh.at(u);
   const Neighbors ring = mesh.ring(u);
@@ -75,7 +77,7 @@ void proximity_candidates(const Mesh& mesh, const SpatialHash& hash, uint32_t u,
     const float near = kMinApart * mesh.size_between(u, w);
     if (candidates.size() == most || w == u || squared_distance(p, q) >= near * near) return;
     if (pending[w] == stamp && w < u) return;
-    if (ring.contains(w)) return;
+    if (ring.contains(w) || mesh.is_held(w)) return;
     if (const auto candidate = classify(mesh, ring, u, w, iteration)) {
       candidates.push_back(*candidate);
     }

@@ -40,7 +40,8 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
     uint32_t count[kParts] = {};
     for (size_t i = begin; i < end; ++i) {
       const auto v = static_cast<uint32_t>(i);
-      if (mesh.alive(v)) ++count[bucket(quanta(load_four(position[v]))) >> part_shift];
+      if (mesh.alive(v) && !mesh.is_absent(v))
+        ++count[bucket(quanta(load_four(position[v]))) >> part_shift];
     }
     std::copy(count, count + kParts, part_start_.data() + block * kParts);
   });
@@ -61,7 +62,7 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
     uint32_t* next = part_start_.data() + block * kParts;
     for (size_t i = begin; i < end; ++i) {
       const auto v = static_cast<uint32_t>(i);
-      if (!mesh.alive(v)) continue;
+      if (!mesh.alive(v) || mesh.is_absent(v)) continue;
       const FourInts q = quanta(load_four(position[v]));
       const uint32_t b = bucket(q);
       placed_[next[b >> part_shift]++] = {v, b, coarse_place(q[0], q[1], q[2])};

@@ -301,11 +301,12 @@ bool EmbeddingGuard::clear_of(const Mesh& mesh, const Proposal& proposal, const 
   const FaceBox all = widened(box_);
   for (const uint32_t* id = ids; id != ids + count; ++id) {
     const uint32_t x = *id, d = rings.valence[x];
-    if (d == 0 || removed(x)) continue;
+    if (d == 0 || removed(x) || mesh.is_absent(x)) continue;
     uint32_t b = rings.slot(x, d - 1);
     for (uint32_t k = 0; k < d; ++k) {
       const uint32_t a = b;
       b = rings.slot(x, k);
+      if (mesh.is_absent(a) || mesh.is_absent(b)) continue;
       const FaceBox box = face_box(at[x], at[a], at[b]);
       if (!boxes_overlap(box, all) || !counts(x, a, b)) continue;
       if (removed(a) || removed(b) || removed_edge(x, a, b)) continue;

@@ -43,25 +43,29 @@ uint32_t MeetingSearch::index_of(const Mesh& mesh, uint32_t a, uint32_t b, uint3
 // Tests the marked faces around v against each other.
 void MeetingSearch::search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) const {
   const uint32_t count = mesh.rings.valence[v];
-  if (count == 0) return;
-  bool marked = mesh.marked(v), moved = mesh.moved(v);
+  if (count == 0 || mesh.absent(v)) return;
+  bool marked = mesh.marked(v), moved = mesh.moved(v), border = false;
   for (uint32_t k = 0; k < count && !(marked && moved); ++k) {
     marked = marked || mesh.marked(mesh.rings.slot(v, k));
     moved = moved || mesh.moved(mesh.rings.slot(v, k));
   }
-  if (!marked || !moved || star_is_embedded(mesh.rings, mesh.positions, v)) return;
+  for (uint32_t k = 0; k < count && mesh.held != nullptr; ++k) {
+    border = border || mesh.absent(mesh.rings.slot(v, k));
+  }
+  if (!marked || !moved) return;
+  if (!border && star_is_embedded(mesh.rings, mesh.positions, v)) return;
   const auto corners = [&](uint32_t k) {
     return std::array<uint32_t, 3>{v, mesh.rings.slot(v, k),
                                    mesh.rings.slot(v, k + 1 == count ? 0 : k + 1)};
   };
   for (uint32_t i = 0; i < count; ++i) {
     const auto f = corners(i);
-    if (!mesh.marked(f.data())) continue;
+    if (!mesh.listed(f.data())) continue;
     const bool f_moved = mesh.moved(f.data());
     const Triangle t = make_triangle(mesh.positions, f.data());
     for (uint32_t j = i + 1; j < count; ++j) {
       const auto g = corners(j);
-      if (mesh.marked(g.data()) && (f_moved || mesh.moved(g.data())) &&
+      if (mesh.listed(g.data()) && (f_moved || mesh.moved(g.data())) &&
           triangles_intersect(t, make_triangle(mesh.positions, g.data()))) {
         const uint32_t a = index_of(mesh, f[0], f[1], f[2]), b = index_of(mesh, g[0], g[1], g[2]);
         pairs.emplace_back(std::min(a, b), std::max(a, b));
@@ -162,8 +166,9 @@ void MeetingSearch::search(const Mesh& mesh, std::span<const uint32_t> stars,
 
 const Vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t slots,
                                             const Float4* positions, const uint8_t* marked,
-                                            const Executor& executor, const Float4* before) {
-  mesh_ = {rings, slots, positions, marked, before, nullptr};
+                                            const Executor& executor, const Float4* before,
+                                            const uint32_t* held) {
+  mesh_ = {rings, slots, positions, marked, before, nullptr, held};
   pairs_.clear();
   list_vertices(mesh_);
   list_faces(mesh_, executor);

@@ -7,6 +7,7 @@
 #include "engine/base/four.h"
 #include "engine/base/spares.h"
 #include "engine/exact/self_intersection.h"
+#include "engine/mesh/mesh.h"
 #include "kernels/box_lanes.h"
 #include "kernels/face_pairs.h"
 #include "kernels/ring.h"
@@ -39,10 +40,11 @@ class MeetingSearch {
   // vertices were when no two faces met; NULL: all have moved. Returns the pairs (f, g), f < g, of
   // faces that meet elsewhere than in what they share (triangle_intersection.h: exact, faces of
   // zero area left out), both have a marked vertex, and one has a vertex that has moved; sorted,
-  // until the next call. The same for any executor. The mesh is closed and a manifold.
+  // until the next call. The same for any executor. The mesh is closed and a manifold. held: of
+  // a patch (mesh.h); faces of absent vertices meet nothing; NULL: there are none.
   const Vector<FacePair>& find(const RingView& rings, uint32_t slots, const Float4* positions,
                                const uint8_t* marked, const Executor& executor,
-                               const Float4* before = nullptr);
+                               const Float4* before = nullptr, const uint32_t* held = nullptr);
 
   // After find(), when a few vertices have moved since: the pairs that find() would list, of which
   // one face has one of these vertices. changed: their ids, some twice; no other has moved since
@@ -70,9 +72,15 @@ class MeetingSearch {
     const Float4* before = nullptr;
     const uint8_t* changed =
         nullptr;  // a byte per vertex, not 0 where it has moved; or NULL: see before
+    const uint32_t* held = nullptr;
+    bool absent(uint32_t v) const { return held != nullptr && held[v] == plc::Mesh::kAbsent; }
     bool marked(uint32_t v) const { return marks == nullptr || marks[v] != 0; }
     bool marked(const uint32_t* abc) const {
       return marked(abc[0]) || marked(abc[1]) || marked(abc[2]);
+    }
+    // A face of the surface with a marked corner.
+    bool listed(const uint32_t* abc) const {
+      return marked(abc) && !absent(abc[0]) && !absent(abc[1]) && !absent(abc[2]);
     }
     bool moved(uint32_t v) const {
       if (changed != nullptr) return changed[v] != 0;

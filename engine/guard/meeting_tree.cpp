@@ -89,12 +89,13 @@ void MeetingSearch::list_faces(const Mesh& mesh, const Executor& executor) {
     for (size_t i = begin; i < end; ++i) {
       const uint32_t v = vertices_[i];
       vertex(i);
-      if (!mesh.marked(v)) continue;
+      if (!mesh.marked(v) || mesh.absent(v)) continue;
       const uint32_t count = mesh.rings.valence[v];
       uint32_t b = mesh.rings.slot(v, 0);
       for (uint32_t k = 0; k < count; ++k) {
         const uint32_t a = b;
         b = mesh.rings.slot(v, k + 1 == count ? 0 : k + 1);
+        if (mesh.absent(a) || mesh.absent(b)) continue;
         if ((v < a || !mesh.marked(a)) && (v < b || !mesh.marked(b))) face(v, a, b);
       }
     }
@@ -203,7 +204,7 @@ void MeetingSearch::update_tree(const Mesh& mesh, const uint32_t* changed, size_
     for (uint32_t k = 0; k < valence; ++k) {
       const std::array<uint32_t, 3> abc{v, mesh.rings.slot(v, k),
                                         mesh.rings.slot(v, k + 1 == valence ? 0 : k + 1)};
-      if (mesh.marked(abc.data())) set_face(mesh, index_of(mesh, abc[0], abc[1], abc[2]));
+      if (mesh.listed(abc.data())) set_face(mesh, index_of(mesh, abc[0], abc[1], abc[2]));
     }
   }
   for (size_t level = 1; level < level_count_; ++level) {

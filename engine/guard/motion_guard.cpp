@@ -48,8 +48,9 @@ void MotionGuard::assess(const Vector<uint32_t>& due, const Vector<uint32_t>& at
 int64_t MotionGuard::take_back(const Buffer<Float4>& before, SpatialHash& hash,
                                Vector<uint32_t>& back) {
   const size_t first = back.size();
-  const Vector<FacePair>* pairs = &search_.find(mesh_.rings(), mesh_.slots(), mesh_.position.data(),
-                                                risk_.data(), executor_, before.data());
+  const Vector<FacePair>* pairs =
+      &search_.find(mesh_.rings(), mesh_.slots(), mesh_.position.data(), risk_.data(), executor_,
+                    before.data(), mesh_.held_ids());
   // All corners of two faces that meet go back: what can meet then has a corner among them.
   for (size_t done = first;; done = back.size()) {
     for (const auto& [f, g] : *pairs) {
@@ -60,7 +61,7 @@ int64_t MotionGuard::take_back(const Buffer<Float4>& before, SpatialHash& hash,
     if (back.size() == done) break;
     // What obstacles hold is at risk where it was not listed.
     pairs = pressed ? &search_.find(mesh_.rings(), mesh_.slots(), mesh_.position.data(),
-                                    risk_.data(), executor_, before.data())
+                                    risk_.data(), executor_, before.data(), mesh_.held_ids())
                     : &search_.find_changed(back.data() + done, back.size() - done, executor_);
   }
   return static_cast<int64_t>(back.size() - first);

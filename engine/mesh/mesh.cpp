@@ -105,6 +105,7 @@ uint32_t Mesh::create(Vec3 p, Vec3 speed) {
 // Everything but its ring.
 void Mesh::start_vertex(uint32_t v) {
   visit_streams(*this, [v](auto& stream) { stream[v] = {}; });
+  if (is_patch()) held[v] = 0;
   reset_bytes(v, VertexBytes::Reset::kCreated);
 }
 
@@ -126,7 +127,7 @@ uint32_t Mesh::create_many(uint32_t count, uint32_t valence, const Executor& exe
 }
 
 void Mesh::destroy(uint32_t v) {
-  assert(alive(v));
+  assert(alive(v) && !is_held(v));
   set_valence(v, 0);
   velocity.set(v, {});
   normal.set(v, {});
@@ -247,6 +248,7 @@ void Mesh::grow(uint64_t slots) {
   if (n <= valence_.size()) return;
   const size_t old = valence_.size();
   visit_streams(*this, [n](auto& stream) { stream.resize(n); });
+  if (is_patch()) held.resize(n);
   for (VertexBytes* bytes : attached_) bytes->bytes_.resize(n);
   columns_.resize(n * kRingColumns);
   valence_.resize(n);
@@ -288,6 +290,7 @@ void Mesh::renumber(const Vector<uint32_t>& order, const Executor& executor) {
   to.most_vertices = most_vertices;
   to.most_neighbors = most_neighbors;
   to.slots_ = to.alive_ = static_cast<uint32_t>(order.size());
+  to.held_ = held_;
   carry_rings(order, to, executor);
   std::vector<std::function<void()>> streams;
   visit_streams(to, *this, [&](auto& target, auto& source) {
@@ -296,6 +299,9 @@ void Mesh::renumber(const Vector<uint32_t>& order, const Executor& executor) {
       source = {};
     });
   });
+  if (is_patch()) {
+    streams.emplace_back([&] { permute(held, order, to.padded(), to.held); });
+  }
   const size_t own = streams.size();
   // Side by side, as the streams of a mesh are (buffer.h).
   std::vector<Buffer<uint8_t>> renumbered(attached_.size());
@@ -353,10 +359,19 @@ Vector<uint32_t> Mesh::faces() const {
     for (uint32_t k = 0; k < d; ++k) {
       const uint32_t a = neighbor(v, k);
       const uint32_t b = neighbor(v, k + 1 == d ? 0 : k + 1);
-      if (v < a && v < b) out.insert(out.end(), {v, a, b});
+      if (v < a && v < b && !(is_absent(v) || is_absent(a) || is_absent(b))) {
+        out.insert(out.end(), {v, a, b});
+      }
     }
   }
   return out;
+}
+
+void Mesh::hold(const Vector<uint32_t>& to) {
+  assert(to.size() == slots_);
+  held.resize(valence_.size());
+  std::copy(to.begin(), to.end(), held.begin());
+  held_ = slots_ - static_cast<uint32_t>(std::count(to.begin(), to.end(), 0U));
 }
 
 Mesh Mesh::copy() const {
@@ -368,20 +383,25 @@ Mesh Mesh::copy() const {
 void measure_edges(Mesh& mesh) {
   float longest = 0, of_size = 0;
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    if (mesh.is_absent(v)) continue;
     for (uint32_t k = 0; k < mesh.valence(v); ++k) {
       const uint32_t w = mesh.neighbor(v, k);
+      if (mesh.is_absent(w)) continue;
       const float edge = length(mesh.at(v) - mesh.at(w));
       longest = std::max(longest, edge);
       of_size = std::max(of_size, edge / mesh.size_between(v, w));
     }
   }
-  mesh.stretch = std::max(kSizedStretch, of_size / kMaxEdge);
-  mesh.longest_edge = std::max(longest, mesh.longest_sized_edge());
+  mesh.stretch = std::max(mesh.sizing != nullptr ? kSizedStretch : 1, of_size / kMaxEdge);
+  mesh.longest_edge = longest;
+  if (mesh.sizing != nullptr) {
+    mesh.longest_edge = std::max(longest, mesh.longest_sized_edge());
+  }
 }
 
 uint64_t Mesh::bytes() const {
   const auto of = [](const auto& b) { return b.capacity() * sizeof(b[0]); };
-  uint64_t sum = of(columns_) + of(valence_) + of(tail_);
+  uint64_t sum = of(columns_) + of(valence_) + of(tail_) + of(held);
   visit_streams(*this, [&](const auto& stream) { sum += of(stream); });
   for (const VertexBytes* bytes : attached_) sum += of(bytes->bytes_);
   return sum;

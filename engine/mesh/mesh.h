@@ -59,6 +59,8 @@ struct Streams3 {
 //   cut            4+4    id, iteration annular: which cut made v, and when (exemption from (3))
 //   rings          48+2   id            transformations (kernels/ring.h)
 //
+//   held           4      id + 1        mesh_import.h; only where some vertices are held
+//
 // What single algorithms know of each vertex is theirs, and attached to the mesh (VertexBytes).
 //
 // Coordinates are of the mesh space: voxels of I_0 (method 2 of 4.4) or mm over U_0 (method 1).
@@ -77,6 +79,11 @@ class Mesh {
   Buffer<uint8_t> turns;
   Buffer<uint32_t> cut_id;
   Buffer<uint32_t> cut_iteration;
+  // A patch of a larger surface: vertices that stay where they are, with all faces around them.
+  // 0: free; else 1 + the vertex's id in what was imported, or kAbsent. Empty: all are free.
+  Buffer<uint32_t> held;
+  // Of a vertex that closes a border of the patch: its faces are not of the surface.
+  static constexpr uint32_t kAbsent = ~0U;
 
   // The invariant of (1)-(3), mesh units.
   double delta = 1;
@@ -92,6 +99,16 @@ class Mesh {
   float size_between(uint32_t u, uint32_t v) const {
     return static_cast<float>(delta) * (1 + 0.5F * (position[u].w + position[v].w));
   }
+  bool is_patch() const { return !held.empty(); }
+  bool is_held(uint32_t v) const { return is_patch() && held[v] != 0; }
+  bool is_absent(uint32_t v) const { return is_patch() && held[v] == kAbsent; }
+  // Vertices that move.
+  uint32_t free_count() const { return alive_ - held_; }
+  // Which of them, by id, is no part of the surface; null: none.
+  const uint32_t* held_ids() const { return is_patch() ? held.data() : nullptr; }
+  // Makes it a patch; to: as many as slots.
+  void hold(const Vector<uint32_t>& to);
+
   // Of the largest size there may be.
   float longest_sized_edge() const {
     return kSizedStretch * kMaxEdge * static_cast<float>(delta) * sizing->field.coarsest();
@@ -101,7 +118,7 @@ class Mesh {
   // How far one has to look, where the size is `from`, for all that is no farther than `reach`
   // sizes of where it is itself: sizes grow with the distance.
   float far_reach(float reach, float from) const {
-    if (sizing == nullptr) return reach * from;
+    if (sizing == nullptr) return reach * from * stretch;
     const float most = reach * longest_edge / kMaxEdge;
     reach *= stretch;
     const float slope = reach * sizing->field.slope();
@@ -178,7 +195,7 @@ class Mesh {
   // New ids: new id = rank of v in `order`, which lists every living vertex once. Nothing but the
   // ids changes.
   void renumber(const Vector<uint32_t>& order, const Executor& executor = SerialExecutor());
-  // Triples (v, r[i], r[i+1]) with v the smallest id, in order of v, then of the ring.
+  // Of the surface: triples (v, r[i], r[i+1]), v the smallest id, in order of v, then of the ring.
   Vector<uint32_t> faces() const;
   uint64_t bytes() const;
   Mesh copy() const;
@@ -222,6 +239,7 @@ class Mesh {
 
   uint32_t slots_ = 0;
   uint32_t alive_ = 0;
+  uint32_t held_ = 0;  // of them
   uint32_t created_ = 0;
   Buffer<uint32_t> columns_;
   Buffer<uint16_t> valence_;
@@ -232,8 +250,8 @@ class Mesh {
   AttachedBytes attached_;
 };
 
-// Of an adaptive mesh that may not be of its sizes yet: sets stretch and longest_edge to what its
-// edges are.
+// Of an adaptive mesh, or a patch, that may not be of its sizes yet: sets stretch and longest_edge
+// to what its edges are.
 void measure_edges(Mesh& mesh);
 
 template <typename A, typename B, typename Visit>

@@ -117,7 +117,7 @@ bool Dynamics::only_surface_forces(const Guide& guide) const {
 }
 
 bool Dynamics::moves_at_once(const Guide& guide) const {
-  return only_surface_forces(guide) && model_.bound == Bound::kClamp &&
+  return only_surface_forces(guide) && model_.bound == Bound::kClamp && !mesh_.is_patch() &&
          (guide.user == nullptr || guide.user->pins.empty());
 }
 
@@ -171,6 +171,7 @@ void Dynamics::append_passes(const Guide& guide, const Sleep* sleep, Seconds& se
                        Status s;
                        if (model_.bound == Bound::kScale) s = scale_time_step(guide);
                        if (guide.user != nullptr && !guide.user->pins.empty()) hold_pinned(guide);
+                       if (mesh_.is_patch()) hold_patch(guide);
                        return s;
                      }});
     table.push_back({"move", kAwake | kNormals | kCalm,
@@ -422,13 +423,26 @@ Status Dynamics::scale_time_step(const Guide& guide) {
   return {};
 }
 
-void Dynamics::hold_pinned(const Guide& guide) {
+// Those for which hold(v) neither move nor get any speed.
+template <typename Hold>
+void Dynamics::hold_where(const Hold& hold) {
   for_runs([&](uint32_t begin, uint32_t end) {
     for (uint32_t v = begin; v < std::min(end, mesh_.slots()); ++v) {
-      if (!pinned(*guide.user, mesh_.at(v))) continue;
+      if (!hold(v)) continue;
       mesh_.displacement.set(v, {});
       rate_.set(v, {});
     }
+  });
+}
+
+void Dynamics::hold_pinned(const Guide& guide) {
+  hold_where([&](uint32_t v) { return pinned(*guide.user, mesh_.at(v)); });
+}
+
+// What is held, and what would leave the box that it may move in.
+void Dynamics::hold_patch(const Guide& guide) {
+  hold_where([&](uint32_t v) {
+    return mesh_.is_held(v) || !guide.room.contains(mesh_.at(v) + mesh_.displacement.at(v));
   });
 }
 
@@ -450,7 +464,7 @@ void Dynamics::end_step() {
     longest2 = std::max(longest2, m.longest2);
   }
   const double scale = mesh_.delta * static_cast<double>(time_step_);
-  const double count = std::max(1.0, static_cast<double>(mesh_.vertex_count()));
+  const double count = std::max(1.0, static_cast<double>(mesh_.free_count()));
   energy_ = static_cast<double>(model_.mass) * sum / (2 * count * scale * scale);
   speed_of_fastest_ = static_cast<double>(std::sqrt(longest2)) / scale;
 }

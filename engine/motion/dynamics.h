@@ -99,7 +99,10 @@ class Dynamics {
   // From the last stage to the end of the step: where nothing lies between them in one pass.
   void last_stage_and_move(const Guide& guide);
   Status scale_time_step(const Guide& guide);
+  template <typename Hold>
+  void hold_where(const Hold& hold);
   void hold_pinned(const Guide& guide);
+  void hold_patch(const Guide& guide);
   void move();
   void end_step();
   float longest_move() const;

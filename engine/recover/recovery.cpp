@@ -115,7 +115,7 @@ Status Recovery::start_level() {
   if (Status s = build_gradient_image(); !s.ok()) return s;
   tried_ = VoxelSet();
   bool added = false;
-  if (!fresh) {
+  if (!fresh || mesh_.is_patch()) {
     if (Status s = add_late_bubbles(added); !s.ok()) return s;
   }
   // Other starts are near what they approach. What is frozen halfway on a coarse level goes on with
@@ -139,6 +139,7 @@ void Recovery::enter(int h) {
   guide_.image = image_view(pyramid_, h, spec_.pad_voxels, space_);
   guide_.iso = iso_of(h).value_or(0);
   guide_.metric = space_.metric;
+  place_room();
   user_ = spec_.user;
   const auto place = [this](Vec3 voxel) {
     const auto& s = space_.step;
@@ -156,6 +157,31 @@ void Recovery::enter(int h) {
     };
   }
   guide_.user = &user_;
+}
+
+void Recovery::place_room() {
+  const auto place = [this](const std::array<double, 3>& voxel) {
+    return Vec3{static_cast<float>(voxel[0] * space_.step[0]),
+                static_cast<float>(voxel[1] * space_.step[1]),
+                static_cast<float>(voxel[2] * space_.step[2])};
+  };
+  guide_.room = {place(spec_.room_low), place(spec_.room_high)};
+}
+
+// Where missed places are looked for: of a patch the voxels within its room.
+VoxelRoom Recovery::voxel_room() const {
+  const ImageView& image = guide_.image;
+  VoxelRoom room = whole_room(image);
+  if (!mesh_.is_patch()) return room;
+  const float low[3] = {guide_.room.low.x, guide_.room.low.y, guide_.room.low.z};
+  const float high[3] = {guide_.room.high.x, guide_.room.high.y, guide_.room.high.z};
+  for (size_t a = 0; a < 3; ++a) {
+    const auto last = static_cast<float>(image.dims[a] - 1);
+    const auto voxel = [&](float p) { return image.scale[a] * p + image.offset[a]; };
+    room.low[a] = static_cast<int32_t>(std::ceil(std::clamp(voxel(low[a]), 0.0F, last)));
+    room.high[a] = static_cast<int32_t>(std::floor(std::clamp(voxel(high[a]), 0.0F, last)));
+  }
+  return room;
 }
 
 void Recovery::place_obstacles() {
@@ -194,7 +220,8 @@ Status Recovery::build_gradient_image() {
 Status Recovery::adapt() {
   const double start = now();
   const double target = delta_of(level_);
-  const int steps = refinements_between(mesh_.delta, target);
+  // Of a patch those edges are too long that have not been on this level before.
+  const int steps = mesh_.is_patch() ? 0 : refinements_between(mesh_.delta, target);
   for (int i = 0; i < steps; ++i) {
     if (uint64_t{mesh_.vertex_count()} * 3 > mesh_.most_vertices) return too_many_vertices();
     refine(mesh_, schedule_, spec_.renumbering);
@@ -209,12 +236,16 @@ Status Recovery::adapt() {
   }
   evolution_.restart();
   evolution_.notify("refinement");
-  if (mesh_.sizing != nullptr) {
+  if (mesh_.sizing != nullptr || mesh_.is_patch()) {
     // Before anything moves, the edges are brought to the sizes of this level.
     measure_edges(mesh_);
     evolution_.check_all(record().seconds, record().operations);
-    mesh_.stretch = kSizedStretch;
-    mesh_.longest_edge = mesh_.longest_sized_edge();
+    if (mesh_.is_patch()) {
+      measure_edges(mesh_);  // those of what is held are as they were
+    } else {
+      mesh_.stretch = kSizedStretch;
+      mesh_.longest_edge = mesh_.longest_sized_edge();
+    }
     renumber();
     evolution_.restart();
   }
@@ -231,7 +262,18 @@ Status Recovery::build_sizing() {
   const std::optional<float> iso = iso_of(level_);
   if (!spec_.sizes || !iso) return {};
   sizing_.object = {guide_.image, *iso, spec_.inside_above};
-  if (Status s = sizing_.field.build(guide_.image, *iso, mesh_.delta, *spec_.sizes, schedule_);
+  // What is around a patch makes sizes fine beyond its room, too, as far as they grow from the
+  // finest to the coarsest.
+  VoxelRoom room = voxel_room();
+  for (size_t a = 0; a < 3 && mesh_.is_patch(); ++a) {
+    const double away = (spec_.sizes->coarsest - spec_.sizes->finest) / spec_.sizes->slope *
+                        mesh_.delta * static_cast<double>(guide_.image.scale[a]);
+    const auto voxels = static_cast<int32_t>(std::min(away, 1e6));
+    room.low[a] = std::max(0, room.low[a] - voxels);
+    room.high[a] = std::min(guide_.image.dims[a] - 1, room.high[a] + voxels);
+  }
+  if (Status s =
+          sizing_.field.build(guide_.image, *iso, mesh_.delta, *spec_.sizes, schedule_, room);
       !s.ok()) {
     return s;
   }
@@ -432,7 +474,7 @@ Status Recovery::add_late_bubbles(bool& added) {
   const uint32_t before = mesh_.vertex_count();
   LateBubbles late;
   if (Status s = start_late_bubbles({guide_.image, *iso, spec_.inside_above}, schedule_, mesh_,
-                                    tried_, late, record().operations);
+                                    tried_, late, record().operations, voxel_room());
       !s.ok()) {
     return s;
   }

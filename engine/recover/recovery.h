@@ -48,7 +48,10 @@ struct RecoverySpec {
   Vector<double> obstacle_xyz;
   Vector<uint32_t> obstacle_abc;
   double obstacle_gap = 0;  // delta
-  LevelForce force;         // may be empty
+  // Of a patch (StartSpec::held): the box in which its vertices may move, voxel indices of the
+  // unpadded I_0; no late bubbles are started.
+  std::array<double, 3> room_low{}, room_high{};
+  LevelForce force;  // may be empty
   bool late_bubbles = true;
   bool sleeping = true;       // sleep.h; never with a user's force, which may change at any time
   bool slow_vertices = true;  // 3.6; false: every vertex is checked in every iteration
@@ -152,6 +155,8 @@ class Recovery {
   Status start_level();
   void enter(int h);
   void place_obstacles();
+  void place_room();
+  VoxelRoom voxel_room() const;
   Status build_gradient_image();
   Status build_sizing();
   Status adapt();

@@ -71,7 +71,7 @@ void Resolution::run(uint32_t iteration, const Vector<uint32_t>& moved_since,
   operations_.resize(mesh_.slots());
   pair_queue_ = moved_since;
   changed_.clear();
-  counts.tetrahedron += tiny_.delete_turned_over(mesh_, holding_obstacles());
+  counts.tetrahedron += tiny_.delete_turned_over(mesh_, staying());
   stamp_.resize(mesh_.slots(), 0);
   queue_violated_edges();
   for (int pass = 0; pass < kMaxAxialPasses; ++pass) {
@@ -85,14 +85,22 @@ void Resolution::run(uint32_t iteration, const Vector<uint32_t>& moved_since,
     }
     counts.deferred += static_cast<int64_t>(queue->size());
   }
-  counts.tetrahedron += tiny_.update(mesh_, changed_, holding_obstacles());
+  counts.tetrahedron += tiny_.update(mesh_, changed_, staying());
 }
 
-TinyComponents::Stays Resolution::holding_obstacles() const {
-  if (mesh_.obstacles == nullptr) return nullptr;
+TinyComponents::Stays Resolution::staying() const {
+  if (mesh_.obstacles == nullptr && !mesh_.is_patch()) return nullptr;
   return [this](const Vector<uint32_t>& component) {
-    return mesh_.obstacles->any_inside(mesh_, component);
+    return (mesh_.obstacles != nullptr && mesh_.obstacles->any_inside(mesh_, component)) ||
+           std::any_of(component.begin(), component.end(),
+                       [this](uint32_t v) { return mesh_.is_held(v); });
   };
+}
+
+// Whether the footprint has a vertex that is held: the faces around it are to stay.
+bool Resolution::touches_held() const {
+  return mesh_.is_patch() && std::any_of(footprint_.begin(), footprint_.end(),
+                                         [this](uint32_t v) { return mesh_.is_held(v); });
 }
 
 void Resolution::queue_violated_edges() {
@@ -238,6 +246,7 @@ void Resolution::try_candidates(const Candidate* candidates, size_t count, size_
   for (size_t i = 0; i < count; ++i) {
     trial[i] = Trials::kUntried;
     if (!Trials::can_try(mesh_, candidates[i]) || !free_footprint(candidates[i], claim)) continue;
+    if (touches_held()) continue;
     for (const uint32_t v : footprint_) stamp_[v] = claim;
     trial[i] = tried_.size();
     tried_.push_back(&candidates[i]);
@@ -256,6 +265,7 @@ void Resolution::apply_in_turn(const Candidate& candidate, size_t trial, Vector<
     later.push_back(candidate.edge.v);
     return;
   }
+  if (touches_held()) return;
   if (!within_limit(candidate)) {
     ++counts.deferred;
     return;

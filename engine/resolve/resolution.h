@@ -32,7 +32,8 @@ class Resolution {
   void run(uint32_t iteration, const Vector<uint32_t>& moved_since, OperationCounts& counts);
 
  private:
-  TinyComponents::Stays holding_obstacles() const;
+  TinyComponents::Stays staying() const;
+  bool touches_held() const;
   void queue_violated_edges();
   void resolve_edges(OperationCounts& counts);
   bool resolve_pairs(bool first, OperationCounts& counts);

@@ -67,12 +67,12 @@ class Cutout {
     if (!in_image({0, row, plane})) return;
     const int32_t begin = std::max(first_[0], 0);
     const int32_t end = std::min(first_[0] + width, image_.dims[0]);
-    Vector<float> own(static_cast<size_t>(image_.dims[0]));
-    image_row(image_, row, plane, own.data());
+    Vector<float> own(static_cast<size_t>(end - begin));
+    image_row(image_, row, plane, begin, end, own.data());
     const auto to = [&](int32_t x) -> float& { return values[x - first_[0]]; };
-    for (int32_t x = begin; x < end; ++x) to(x) = outside(depth(own[static_cast<size_t>(x)]));
-    voxels_.visit_row(row, plane, begin, end,
-                      [&](int32_t x) { to(x) = inside(depth(own[static_cast<size_t>(x)])); });
+    const auto at = [&](int32_t x) { return depth(own[static_cast<size_t>(x - begin)]); };
+    for (int32_t x = begin; x < end; ++x) to(x) = outside(at(x));
+    voxels_.visit_row(row, plane, begin, end, [&](int32_t x) { to(x) = inside(at(x)); });
   }
 
   const ImageView& image_;
@@ -95,7 +95,8 @@ double volume_of(const Mesh& mesh, const Executor& executor) {
 }  // namespace
 
 Status start_late_bubbles(const ImageObject& object, const Schedule& schedule, Mesh& mesh,
-                          VoxelSet& tried, LateBubbles& started, OperationCounts& counts) {
+                          VoxelSet& tried, LateBubbles& started, OperationCounts& counts,
+                          const VoxelRoom& room) {
   const auto delta = static_cast<float>(mesh.delta);
   // A vertex of an iso-surface lies at most 0.9 of a voxel's diagonal from a voxel of the place.
   float diagonal = 0;
@@ -103,7 +104,7 @@ Status start_late_bubbles(const ImageObject& object, const Schedule& schedule, M
   const float finest = mesh.sizing == nullptr ? delta : delta * mesh.sizing->field.finest();
   const float clearance = kBubbleGap * finest + 0.9F * std::sqrt(diagonal);
   const MissedPlaces places =
-      find_missed_places(mesh, object, clearance, kSmallestBubble * delta, schedule, tried);
+      find_missed_places(mesh, object, clearance, kSmallestBubble * delta, schedule, tried, room);
   for (const Missed kind : {Missed::kPart, Missed::kCavity}) {
     const int64_t count = places.count[static_cast<size_t>(kind)];
     if (count == 0) continue;

@@ -7,6 +7,7 @@
 #include "engine/base/statistics.h"
 #include "engine/mesh/mesh.h"
 #include "engine/start/voxel_set.h"
+#include "engine/start/voxel_sides.h"
 #include "pyramid/image_object.h"
 #include "pyramid/status.h"
 
@@ -28,7 +29,9 @@ struct LateBubbles {
 // started is put in. Nothing of the image's size is allocated: sets of voxels are held where they
 // are. The surface stays embedded. `started` and `counts` grow. The same bits for any number of
 // threads. Errors: those of conform.h, but for parts of which nothing is left.
+// room: as find_missed_places() takes it.
 Status start_late_bubbles(const ImageObject& object, const Schedule& schedule, Mesh& mesh,
-                          VoxelSet& tried, LateBubbles& started, OperationCounts& counts);
+                          VoxelSet& tried, LateBubbles& started, OperationCounts& counts,
+                          const VoxelRoom& room);
 
 }  // namespace plc

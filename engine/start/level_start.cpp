@@ -215,7 +215,8 @@ Status make_mesh(const StartSpec& spec, const LevelImage& level, const Executor&
   Vector<double> xyz(spec.xyz.size());
   for (size_t i = 0; i < xyz.size(); ++i) xyz[i] = spec.xyz[i] * level.space.step[i % 3];
   return import_mesh(arrays_of(xyz, spec.abc), executor, mesh,
-                     spec.as_given.empty() ? nullptr : spec.as_given.data());
+                     spec.as_given.empty() ? nullptr : spec.as_given.data(),
+                     spec.held.empty() ? nullptr : spec.held.data());
 }
 
 // Every so many voxels of an image that is finer than delta on some axis (level_delta): a surface
@@ -307,7 +308,9 @@ Status start_surface(const StartSpec& spec, const LevelImage& level, double delt
   if (mesh.obstacles != nullptr) {
     if (Status s = check_obstacles(mesh, level); !s.ok()) return s;
   }
-  if (!needs_conforming(spec.init)) return {};
+  mesh.delta = delta;
+  // A patch is fitted to what it is a part of when its level starts.
+  if (!needs_conforming(spec.init) || mesh.is_patch()) return {};
   Status s = conform(mesh, delta, schedule, counts);
   if (s.code() != ErrorCode::kInvalidData || spec.init == Init::kMesh) return s;
   mesh.clear();  // nothing that this level resolves

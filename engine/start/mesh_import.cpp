@@ -15,6 +15,7 @@
 #include "engine/measure/mesh_topology.h"
 #include "engine/measure/nesting.h"
 #include "engine/mesh/face_rings.h"
+#include "engine/start/patch.h"
 #include "pyramid/memory.h"
 
 namespace plc {
@@ -31,12 +32,12 @@ class Complaint {
   Complaint(const MeshArrays& mesh, const double* as_given, const Executor& executor)
       : mesh_(mesh), as_given_(as_given), executor_(executor) {}
 
-  std::string of(const MeshCheck& check) const {
+  std::string of(const MeshCheck& check, bool patch) const {
     if (mesh_.face_count == 0) return "no faces";
     if (const auto f = first_face_with_repeated_vertex()) {
       return "degenerate: a face repeats a vertex: " + face(*f);
     }
-    if (check.border_edges != 0) {
+    if (check.border_edges != 0 && !patch) {
       return "open: " + std::to_string(check.border_edges) + " border edges, the first " +
              first_edge([](size_t uses, bool) { return uses == 1; });
     }
@@ -162,14 +163,19 @@ class Complaint {
   const Executor& executor_;
 };
 
-Status check_input(const MeshArrays& mesh, const double* as_given, const char* prefix,
+bool valid_patch(const MeshCheck& check) {
+  return check.manifold == 1 && check.oriented == 1 && check.degenerate_faces == 0 &&
+         check.self_intersections == 0 && check.measures.faces > 0;
+}
+
+Status check_input(const MeshArrays& mesh, const double* as_given, const char* prefix, bool patch,
                    const Executor& executor) {
   MeshCheck check;
   if (Status s = check_mesh(mesh, executor, check); !s.ok()) {
     return {s.code(), "mesh: " + s.message()};
   }
-  if (check.valid == 1) return {};
-  return refused(prefix + Complaint(mesh, as_given, executor).of(check));
+  if (patch ? valid_patch(check) : check.valid == 1) return {};
+  return refused(prefix + Complaint(mesh, as_given, executor).of(check, patch));
 }
 
 // Asked first: the search for intersections takes the square of the faces around one vertex.
@@ -188,11 +194,13 @@ Status check_valences(const MeshArrays& mesh) {
                  " are possible");
 }
 
-Status check_range(const MeshArrays& mesh, const FaceRings& rings) {
+Status check_range(const MeshArrays& mesh) {
   constexpr double kWidest = kReach;
+  Vector<uint8_t> has_face(mesh.vertex_count, 0);
+  for (const uint32_t* v = mesh.abc; v != mesh.face(mesh.face_count); ++v) has_face[*v] = 1;
   uint64_t used = 0;
   for (size_t v = 0; v < mesh.vertex_count; ++v) {
-    if (rings.faces(v) == 0) continue;
+    if (has_face[v] == 0) continue;
     ++used;
     for (size_t k = 0; k < 3; ++k) {
       if (std::abs(mesh.point(v)[k]) <= kWidest) continue;
@@ -211,31 +219,32 @@ Status check_range(const MeshArrays& mesh, const FaceRings& rings) {
 }  // namespace
 
 Status import_mesh(const MeshArrays& given, const Executor& executor, Mesh& mesh,
-                   const double* as_given) {
+                   const double* as_given, const uint8_t* held) {
   if (as_given == nullptr) as_given = given.xyz;
+  const bool patch = held != nullptr;
   if (Status s = check_valences(given); !s.ok()) return s;
-  if (Status s = check_input(given, as_given, "mesh: ", executor); !s.ok()) return s;
+  if (Status s = check_input(given, as_given, "mesh: ", patch, executor); !s.ok()) return s;
   const size_t vertices = given.vertex_count;
-  const FaceRings rings(given.abc, given.face_count, vertices, executor);
-  if (Status s = check_range(given, rings); !s.ok()) return s;
+  if (Status s = check_range(given); !s.ok()) return s;
   // Rounding moves vertices a little: near sheets may meet then, and thin faces turn over.
   Vector<float> rounded(3 * vertices);
   Vector<double> back(3 * vertices);
-  for (size_t v = 0; v < vertices; ++v) {
-    if (rings.faces(v) == 0) continue;
-    for (size_t i = 3 * v; i < 3 * v + 3; ++i) {
+  for (const uint32_t* v = given.abc; v != given.face(given.face_count); ++v) {
+    for (size_t i = size_t{3} * *v; i < size_t{3} * *v + 3; ++i) {
       rounded[i] = static_cast<float>(given.xyz[i]);
       back[i] = static_cast<double>(rounded[i]);
     }
   }
   if (!std::equal(back.begin(), back.end(), given.xyz)) {
     const MeshArrays moved{back.data(), vertices, given.abc, given.face_count};
-    if (Status s =
-            check_input(moved, as_given, "mesh: after rounding to single precision: ", executor);
+    if (Status s = check_input(moved, as_given, "mesh: after rounding to single precision: ", patch,
+                               executor);
         !s.ok()) {
       return s;
     }
   }
+  if (patch) return fill_patch(given, held, rounded.data(), executor, mesh);
+  const FaceRings rings(given.abc, given.face_count, vertices, executor);
   fill_from_rings(mesh, rounded.data(), vertices, rings);
   return {};
 }

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/base/constants.h"
-#include "engine/start/voxel_sides.h"
 #include "kernels/image_value.h"
 #include "pyramid/memory.h"
 
@@ -23,17 +22,24 @@ constexpr size_t kSlab = 8, kSquare = 4;
 // The voxels on which the image and the surface disagree.
 class Disagreement {
  public:
-  Disagreement(const Mesh& mesh, const ImageObject& object)
-      : image_(object.image), iso_(object.iso), above_(object.above), sides_(mesh, object.image) {}
+  Disagreement(const Mesh& mesh, const ImageObject& object, const VoxelRoom& room)
+      : image_(object.image),
+        iso_(object.iso),
+        above_(object.above),
+        room_(room),
+        sides_(mesh, object.image, room) {}
+
+  bool known() const { return sides_.known(); }
 
   void add(int32_t z, Sets& missed) const {
     constexpr size_t kWord = sizeof(uint64_t);
-    const auto width = static_cast<size_t>(image_.dims[0]);
+    const int32_t first = room_.low[0];
+    const auto width = static_cast<size_t>(room_.high[0] - first + 1);
     Vector<float> values(width);
     Vector<uint8_t> inside(width), differ((width + kWord - 1) / kWord * kWord, 0);
-    for (int32_t y = 0; y < image_.dims[1]; ++y) {
+    for (int32_t y = room_.low[1]; y <= room_.high[1]; ++y) {
       sides_.row(y, z, inside.data());
-      image_row(image_, y, z, values.data());
+      image_row(image_, y, z, first, room_.high[0] + 1, values.data());
       if (above_) {
         for (size_t x = 0; x < width; ++x) differ[x] = inside[x] ^ uint8_t { values[x] >= iso_ };
       } else {
@@ -46,7 +52,7 @@ class Disagreement {
         for (size_t i = x; i < x + kWord; ++i) {
           if (differ[i] == 0) continue;
           const Missed kind = inside[i] != 0 ? Missed::kCavity : Missed::kPart;
-          missed[static_cast<size_t>(kind)].insert({static_cast<int32_t>(i), y, z});
+          missed[static_cast<size_t>(kind)].insert({first + static_cast<int32_t>(i), y, z});
         }
       }
     }
@@ -56,6 +62,7 @@ class Disagreement {
   const ImageView& image_;
   float iso_;
   bool above_;
+  VoxelRoom room_;
   VoxelSides sides_;
 };
 
@@ -88,7 +95,7 @@ class Search {
     };
     const auto z_of = [&](uint32_t v) { return voxel_of(mesh.at(v))[2]; };
     for (uint32_t v = 0; v < mesh.slots(); ++v) {
-      if (mesh.alive(v)) list(vertices, z_of(v), z_of(v), v);
+      if (mesh.alive(v) && !mesh.is_absent(v)) list(vertices, z_of(v), z_of(v), v);
     }
     const Vector<uint32_t> corners = apart > 0 ? mesh.faces() : Vector<uint32_t>();
     for (size_t c = 0; c < corners.size(); c += 3) {
@@ -316,13 +323,14 @@ class Search {
 }  // namespace
 
 MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object, float clearance,
-                                float radius, const Executor& executor, VoxelSet& tried) {
+                                float radius, const Executor& executor, VoxelSet& tried,
+                                const VoxelRoom& room) {
   const ImageView& image = object.image;
   Sets missed{VoxelSet(image.dims), VoxelSet(image.dims)};
-  {
-    const Disagreement disagreement(mesh, object);
-    executor.run(static_cast<size_t>(image.dims[2]),
-                 [&](size_t z) { disagreement.add(static_cast<int32_t>(z), missed); });
+  if (const Disagreement disagreement(mesh, object, room); disagreement.known()) {
+    executor.run(static_cast<size_t>(room.high[2] - room.low[2] + 1), [&](size_t k) {
+      disagreement.add(room.low[2] + static_cast<int32_t>(k), missed);
+    });
   }
   Search search(image, missed);
   const float apart = mesh.sizing == nullptr

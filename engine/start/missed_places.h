@@ -6,6 +6,7 @@
 
 #include "engine/mesh/mesh.h"
 #include "engine/start/voxel_set.h"
+#include "engine/start/voxel_sides.h"
 #include "pyramid/executor.h"
 #include "pyramid/image_object.h"
 
@@ -27,7 +28,9 @@ struct MissedPlaces {
 // where the mesh is adaptive, of a face. Those that hold no ball of `radius`, where the mesh is
 // adaptive nor kPlaceVoxels voxels, and those with a voxel that `tried` holds, are left out; the
 // others are put into it, which is of the image's voxels or of none yet. The same for any executor.
+// room: of a patch, where all of its faces are and where alone is looked; of others the image.
 MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object, float clearance,
-                                float radius, const Executor& executor, VoxelSet& tried);
+                                float radius, const Executor& executor, VoxelSet& tried,
+                                const VoxelRoom& room);
 
 }  // namespace plc

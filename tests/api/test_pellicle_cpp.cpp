@@ -62,6 +62,7 @@ TEST_CASE("a surface by the layer for C++ is that of C, and tells the same", "[p
   CHECK(surface.scalars(PLC_SPACE_LPS, PLC_SCALAR_VALENCE).size() ==
         static_cast<size_t>(surface.vertex_count()));
   CHECK(surface.frozen_sites(PLC_SPACE_LPS).empty());
+  CHECK(surface.patch() == std::vector<int64_t>(surface.patch().size(), PLC_PATCH_FREE));
   CHECK(surface.converged());
   CHECK(surface.check().valid == 1);
   CHECK(surface.measure(PLC_SPACE_LPS).faces == surface.face_count());

@@ -38,9 +38,9 @@ LateBubbles start(Mesh& mesh, const BallScene& scene, VoxelSet& tried, int threa
   const plc::Schedule schedule(threads);
   LateBubbles started;
   plc::OperationCounts counts;
-  REQUIRE(
-      plc::start_late_bubbles({scene.view(), kIso, above}, schedule, mesh, tried, started, counts)
-          .message() == "");
+  REQUIRE(plc::start_late_bubbles({scene.view(), kIso, above}, schedule, mesh, tried, started,
+                                  counts, plc::whole_room(scene.view()))
+              .message() == "");
   CHECK(plc::broken_invariant(mesh) == "");
   CHECK(samples::meeting_count(mesh) == 0);
   CHECK(mesh.delta == kDelta);

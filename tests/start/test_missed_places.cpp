@@ -28,7 +28,7 @@ void surface_around(Mesh& mesh, const Ball& b) {
 MissedPlaces find(const Mesh& mesh, const BallScene& scene, VoxelSet& tried,
                   float clearance = kClearance, float radius = kRadius) {
   return plc::find_missed_places(mesh, {scene.view(), kIso, true}, clearance, radius,
-                                 samples::kSerial, tried);
+                                 samples::kSerial, tried, plc::whole_room(scene.view()));
 }
 
 MissedPlaces find(const Mesh& mesh, const BallScene& scene, float clearance = kClearance,
@@ -108,8 +108,9 @@ TEST_CASE("dark objects in bright images are told by the other side of iso", "[m
   const MissedPlaces bright = find(mesh, scene, bright_tried);
   for (float& v : scene.values) v = 1 - v;
   VoxelSet tried;
-  const MissedPlaces dark = plc::find_missed_places(mesh, {scene.view(), kIso, false}, kClearance,
-                                                    kRadius, samples::kSerial, tried);
+  const MissedPlaces dark =
+      plc::find_missed_places(mesh, {scene.view(), kIso, false}, kClearance, kRadius,
+                              samples::kSerial, tried, plc::whole_room(scene.view()));
   CHECK(dark.count == std::array<int64_t, 2>{1, 0});
   CHECK(all_of(dark, Missed::kPart) == all_of(bright, Missed::kPart));
 }
@@ -243,8 +244,9 @@ TEST_CASE("missed places are the same for any number of threads", "[missed_place
   for (const int threads : {2, 3}) {
     const plc::Schedule schedule(threads);
     VoxelSet marks;
-    const MissedPlaces places = plc::find_missed_places(mesh, {scene.view(), kIso, true},
-                                                        kClearance, kRadius, schedule, marks);
+    const MissedPlaces places =
+        plc::find_missed_places(mesh, {scene.view(), kIso, true}, kClearance, kRadius, schedule,
+                                marks, plc::whole_room(scene.view()));
     CHECK(places.count == one.count);
     CHECK(places.low == one.low);
     CHECK(places.high == one.high);

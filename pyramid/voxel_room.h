@@ -1,0 +1,19 @@
+// A box of voxels of a level: where alone a part of a surface is worked on.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "kernels/image.h"
+
+namespace plc {
+
+// Voxels low .. high, both within.
+struct VoxelRoom {
+  std::array<int32_t, 3> low, high;
+};
+
+inline VoxelRoom whole_room(const ImageView& image) {
+  return {{0, 0, 0}, {image.dims[0] - 1, image.dims[1] - 1, image.dims[2] - 1}};
+}
+
+}  // namespace plc
