@@ -31,8 +31,9 @@ std::string duration_text(double seconds) {
   return text.data();
 }
 
-CohortProgress::CohortProgress(std::string what, size_t total, bool quiet)
+CohortProgress::CohortProgress(std::string what, size_t total, bool quiet, std::string things)
     : what_(std::move(what)),
+      things_(std::move(things)),
       total_(total),
       quiet_(quiet),
       terminal_(isatty(STDERR_FILENO) == 1),
@@ -51,7 +52,7 @@ void CohortProgress::update(size_t done, const std::string& note) {
   if (quiet_ || now < due_) return;
   due_ = now + (terminal_ ? kTerminalPeriod : kLinePeriod);
   std::string line =
-      std::to_string(done) + " of " + std::to_string(total_) + " scans " + what_ + note;
+      std::to_string(done) + " of " + std::to_string(total_) + " " + things_ + " " + what_ + note;
   if (done > 0 && done < total_) {
     const double left = now * static_cast<double>(total_ - done) / static_cast<double>(done);
     line += ", about " + duration_text(left) + " left";

@@ -11,8 +11,8 @@ std::string duration_text(double seconds);
 
 class CohortProgress {
  public:
-  // `what` has been done with so many of `total` scans.
-  CohortProgress(std::string what, size_t total, bool quiet);
+  // `what` has been done with so many of `total` scans, or other things.
+  CohortProgress(std::string what, size_t total, bool quiet, std::string things = "scans");
   ~CohortProgress();  // leaves a terminal's line empty
   CohortProgress(const CohortProgress&) = delete;
   CohortProgress& operator=(const CohortProgress&) = delete;
@@ -26,7 +26,7 @@ class CohortProgress {
  private:
   void clear();
 
-  std::string what_;
+  std::string what_, things_;
   size_t total_;
   bool quiet_;
   bool terminal_;

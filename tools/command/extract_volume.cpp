@@ -1,6 +1,7 @@
 #include "tools/command/extract_volume.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -59,13 +60,17 @@ plc_status ExtractVolume::extract(plc_context* context, const plc_parameters& pa
   if (source_ == nullptr) {
     return plc_extract(context, &loaded_.image, &parameters, &extras, surface);
   }
-  if (volume_ == nullptr) {
-    const plc_bricks bricks = bricks_of(*source_);
-    plc_volume* made = nullptr;
-    demand(context, plc_volume_create_bricks(context, &bricks, &made));
-    volume_.reset(made);
-  }
+  if (volume_ == nullptr) volume_ = volume_of(context, *source_, NAN, NAN);
   return plc_extract_volume(context, volume_.get(), &parameters, &extras, surface);
+}
+
+VolumeHandle volume_of(plc_context* context, const BrickSource& source, double low, double high) {
+  plc_bricks bricks = bricks_of(source);
+  bricks.low = low;
+  bricks.high = high;
+  plc_volume* made = nullptr;
+  demand(context, plc_volume_create_bricks(context, &bricks, &made));
+  return VolumeHandle(made);
 }
 
 std::optional<plc_brick_counts> ExtractVolume::brick_counts(plc_context* context) const {

@@ -39,6 +39,10 @@ class ExtractVolume {
   VolumeHandle volume_;  // of the source
 };
 
+// The engine's volume of a source, which must outlive it, as must the context. low, high: the range
+// of the voxels where it is known, else NAN. Throws Failure.
+VolumeHandle volume_of(plc_context* context, const BrickSource& source, double low, double high);
+
 // Of the context: what --memory leaves of it for the engine beside `held` bytes of images in
 // memory, and what the machine has. Throws Failure.
 int64_t memory_limit(const ExtractOptions& options, size_t held);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "engine/pellicle.h"
+#include "tools/command/command_blocks.h"
 #include "tools/command/command_check.h"
 #include "tools/command/command_cohort.h"
 #include "tools/command/command_extract.h"
@@ -79,6 +80,7 @@ class Command {
     view_ = add("view", "Write a page that shows an image and surfaces in any browser");
     cohort_ =
         add("cohort", "Extract surfaces from many scans, in shares, on a laptop or a cluster");
+    blocks_ = add("blocks", "Extract one surface from one large image in tasks, on many machines");
     add_extract_options(*extract_, extract_options_);
     add_label_options(*extract_, extract_options_);
     add_slicer_option(*extract_);
@@ -91,7 +93,10 @@ class Command {
     add_render_options(*render_, render_options_);
     add_view_options(*view_, view_options_);
     add_cohort_options(*cohort_, cohort_options_);
-    for (CLI::App* command : cohort_->get_subcommands({})) demand_file_names(*command);
+    add_block_options(*blocks_, block_options_);
+    for (CLI::App* group : {cohort_, blocks_}) {
+      for (CLI::App* command : group->get_subcommands({})) demand_file_names(*command);
+    }
     for (CLI::App* command :
          {extract_, info_, check_, measure_, mesh_, simplify_, phantom_, render_, view_}) {
       demand_file_names(*command);
@@ -113,7 +118,10 @@ class Command {
       if (app_.get_subcommands().empty() && !unknown.empty()) {
         return fail(unknown[0] +
                     ": unknown command; extract, info, check, measure, mesh, simplify, phantom, "
-                    "render, view or cohort");
+                    "render, view, cohort or blocks");
+      }
+      if (blocks_->parsed() && blocks_->get_subcommands().empty()) {
+        return fail("blocks: what is to be done is one of plan, run, status, check or mesh");
       }
       if (cohort_->parsed() && cohort_->get_subcommands().empty()) {
         return fail("cohort: what is to be done is one of plan, run, status, collect or submit");
@@ -129,6 +137,7 @@ class Command {
     if (phantom_->parsed()) return run_phantom(phantom_arguments_);
     if (render_->parsed()) return run_render(render_options_);
     if (cohort_->parsed()) return run_cohort_command(*cohort_, cohort_options_, interrupt_);
+    if (blocks_->parsed()) return run_block_command(*blocks_, block_options_, interrupt_);
     return run_view(view_options_);
   }
 
@@ -150,6 +159,7 @@ class Command {
   CLI::App* render_ = nullptr;
   CLI::App* view_ = nullptr;
   CLI::App* cohort_ = nullptr;
+  CLI::App* blocks_ = nullptr;
   ExtractOptions extract_options_;
   InfoOptions info_options_;
   CheckOptions check_options_;
@@ -160,6 +170,7 @@ class Command {
   RenderOptions render_options_;
   ViewOptions view_options_;
   CohortOptions cohort_options_;
+  BlockOptions block_options_;
 };
 
 }  // namespace

@@ -1,0 +1,455 @@
+#include "tools/command/command_blocks.h"
+
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "tools/blocks/block_check.h"
+#include "tools/blocks/block_plan.h"
+#include "tools/blocks/block_task.h"
+#include "tools/cohort/cohort_progress.h"
+#include "tools/command/clock.h"
+#include "tools/command/engine_handles.h"
+#include "tools/command/extract_inputs.h"
+#include "tools/command/extract_job.h"
+#include "tools/command/extract_volume.h"
+#include "tools/command/mesh_precision.h"
+#include "tools/command/progress_line.h"
+#include "tools/command/surface_mesh.h"
+#include "tools/file/failure.h"
+#include "tools/mesh/mesh_io.h"
+
+namespace plc::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void make_folder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) throw Failure{path + ": cannot be made: " + error.message()};
+}
+
+// ---- plan ----------------------------------------------------------------------------------
+
+struct CoarseWatch {
+  ProgressLine& line;
+  const InterruptGuard& interrupt;
+  int until;  // the last level that is done whole
+};
+
+int on_progress(const plc_progress* progress, void* user) {
+  auto& watch = *static_cast<CoarseWatch*>(user);
+  watch.line.update(*progress);
+  return watch.interrupt.interrupted() ? 1 : 0;
+}
+
+plc_verdict on_level(const plc_level_report* level, const plc_surface* /*surface*/, void* user) {
+  const auto& watch = *static_cast<const CoarseWatch*>(user);
+  return level->level <= watch.until ? PLC_VERDICT_STOP : PLC_VERDICT_ACCEPT;
+}
+
+void check_plan(const BlockOptions& options) {
+  const plc_parameters& p = options.extract.parameters;
+  const auto refuse = [](const std::string& why) { throw Failure{"blocks: " + why}; };
+  if (options.from_level < 0) refuse("--from-level must be 0 or more");
+  if (p.levels >= 0 && p.levels <= options.from_level) {
+    refuse("--from-level " + std::to_string(options.from_level) + ": must be below --levels " +
+           std::to_string(p.levels) + ", as the levels above it are done whole");
+  }
+  if (p.force != PLC_FORCE_ISO) refuse("only --force iso can be done by blocks");
+  if (options.extract.isos.size() != 1) refuse("one --iso must be given");
+}
+
+// Before the coarse levels are done.
+int64_t checked_margin(const BlockOptions& options, const plc_image& image) {
+  const int64_t margin =
+      margin_of(BlockPlan::band_of(options.extract.parameters, image, options.from_level));
+  if (options.side >= 4 * margin) return margin;
+  throw Failure{
+      "blocks: --side " + std::to_string(options.side) + ": must be " + std::to_string(4 * margin) +
+      " or more for edges as long as these and --from-level " + std::to_string(options.from_level)};
+}
+
+BlockPlan plan_of(const BlockOptions& options, plc_context* context, const plc_image& image,
+                  int64_t margin, const plc_surface* surface) {
+  BlockPlan plan;
+  plan.version = plc_version_string();
+  plan.input = fs::absolute(options.extract.input).lexically_normal().string();
+  plan.image = image;
+  plan.from_level = options.from_level;
+  plan.grid = BlockGrid({image.dims[0], image.dims[1], image.dims[2]}, options.side, margin);
+  plc_parameters_defaults(&plan.parameters);
+  demand(context, plc_surface_parameters(context, surface, &plan.parameters));
+  demand(context, plc_surface_input_range(context, surface, &plan.low, &plan.high));
+  char hash[24];
+  std::snprintf(hash, sizeof hash, "%016" PRIx64, plc_surface_hash(surface));
+  plan.hash = hash;
+  return plan;
+}
+
+int run_plan(BlockOptions& options, InterruptGuard& interrupt) {
+  check_plan(options);
+  const double start = now();
+  interrupt.end_at_once();
+  ExtractVolume volume(options.extract);
+  const int64_t margin = checked_margin(options, volume.image());
+  ExtractJob job = jobs_of(options.extract)[0];
+  resolve(job, volume.voxels());
+  plc_context_options context_options = options.extract.context;
+  context_options.memory_limit = memory_limit(options.extract, volume.held());
+  const ContextHandle context = make_context(context_options);
+  const ExtractInputs inputs(options.extract, volume.whole());
+  ProgressLine line(options.extract.progress);
+  CoarseWatch watch{line, interrupt, options.from_level + 1};
+  plc_extras extras = inputs.extras();
+  extras.progress = on_progress;
+  extras.progress_user = &watch;
+  extras.level = on_level;
+  extras.level_user = &watch;
+  interrupt.note_first();
+  plc_surface* made = nullptr;
+  const plc_status status = volume.extract(context.get(), job.parameters, extras, &made);
+  if (status == PLC_CANCELLED) return interrupt.tell();
+  demand(context.get(), status);
+  const SurfaceHandle surface(made);
+  line.clear();
+  if (plc_surface_level_count(surface.get()) == 0 || plc_surface_face_count(surface.get()) == 0) {
+    throw Failure{"blocks: the coarse levels hold no surface"};
+  }
+  BlockPlan plan = plan_of(options, context.get(), volume.image(), margin, surface.get());
+  if (plan.parameters.levels <= plan.from_level) {
+    throw Failure{"blocks: --from-level " + std::to_string(plan.from_level) +
+                  ": the image has no more than " + std::to_string(plan.parameters.levels) +
+                  " levels above it"};
+  }
+  const TriangleMesh mesh = mesh_of(context.get(), surface.get(), PLC_SPACE_VOXEL);
+  plan.start_vertices = static_cast<int64_t>(mesh.xyz.size() / 3);
+  plan.start_faces = static_cast<int64_t>(mesh.abc.size() / 3);
+  interrupt.only_note();
+  make_folder(options.folder + "/start");
+  if (fs::exists(options.folder + "/plan.json")) {
+    const BlockPlan before = read_plan(options.folder);
+    if (before.hash != plan.hash || before.input != plan.input ||
+        before.grid.side() != plan.grid.side() || before.from_level != plan.from_level) {
+      throw Failure{options.folder + ": has another plan already"};
+    }
+  }
+  for (int step = 0; step < plan.steps(); step += BlockGrid::kColours) {
+    make_folder(options.folder + "/level" + std::to_string(plan.level_of(step)));
+  }
+  write_start(options.folder, plan, mesh.xyz, mesh.abc);
+  write_plan(options.folder, plan);
+  if (options.extract.progress != Progress::kNone) {
+    const Int3& n = plan.grid.blocks();
+    std::printf("planned  %" PRId64 " x %" PRId64 " x %" PRId64 " blocks of %" PRId64
+                " voxels, %d steps, from %" PRId64 " vertices, in %.1f s\n",
+                n[0], n[1], n[2], plan.grid.side(), plan.steps(), plan.start_vertices,
+                now() - start);
+  }
+  return 0;
+}
+
+// ---- run -----------------------------------------------------------------------------------
+
+// The image of a plan: by bricks where it can be read so.
+class BlockVolume {
+ public:
+  explicit BlockVolume(const BlockPlan& plan) : source_(open_bricks(plan.input)) {
+    if (source_ == nullptr) loaded_ = read_volume_apart(plan.input, NiftiFrame::kAuto);
+    const plc_image& image = source_ ? source_->image() : loaded_.image;
+    if (image.type != plan.image.type || !std::equal(image.dims, image.dims + 3, plan.image.dims) ||
+        !std::equal(image.spacing, image.spacing + 3, plan.image.spacing)) {
+      throw Failure{plan.input + ": is not the image that was planned with"};
+    }
+  }
+
+  size_t held() const { return loaded_.bytes.size(); }
+
+  // The context must outlive this.
+  const plc_volume* open(plc_context* context, const BlockPlan& plan) {
+    if (source_ != nullptr) {
+      volume_ = volume_of(context, *source_, plan.low, plan.high);
+    } else {
+      plc_volume* made = nullptr;
+      demand(context, plc_volume_create(context, &loaded_.image, PLC_BORROW, &made));
+      volume_.reset(made);
+    }
+    return volume_.get();
+  }
+
+  int64_t bricks_read(plc_context* context) const {
+    if (source_ == nullptr) return 0;
+    plc_brick_counts counts;
+    plc_brick_counts_defaults(&counts);
+    demand(context, plc_volume_brick_counts(context, volume_.get(), &counts));
+    return counts.read;
+  }
+
+ private:
+  std::unique_ptr<BrickSource> source_;
+  LoadedVolume loaded_;
+  VolumeHandle volume_;
+};
+
+// The blocks of a step that this share is to do.
+std::vector<int64_t> share_of(const BlockOptions& options, const BlockPlan& plan, int step) {
+  const std::vector<int64_t> all = plan.grid.blocks_of_colour(step % BlockGrid::kColours);
+  std::vector<int64_t> own;
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (static_cast<int>(i % static_cast<size_t>(options.parts)) + 1 == options.part) {
+      own.push_back(all[i]);
+    }
+  }
+  return own;
+}
+
+int run_tasks(const BlockOptions& options, InterruptGuard& interrupt) {
+  const BlockPlan plan = read_plan(options.folder);
+  if (options.step && *options.step >= plan.steps()) {
+    throw Failure{"--step " + std::to_string(*options.step) + ": the plan has " +
+                  std::to_string(plan.steps()) + ", from 0"};
+  }
+  if (options.parts > 1 && !options.step) {
+    throw Failure{"--task: of a step, which --step tells: steps wait for each other"};
+  }
+  interrupt.end_at_once();
+  BlockVolume volume(plan);
+  ExtractOptions limits;
+  limits.memory = options.memory;
+  plc_context_options context_options;
+  plc_context_options_defaults(&context_options);
+  context_options.threads = options.threads;
+  context_options.memory_limit = memory_limit(limits, volume.held());
+  const ContextHandle context = make_context(context_options);
+  BlockTasks tasks(options.folder, plan, context.get(), volume.open(context.get(), plan));
+  std::vector<std::pair<int, int64_t>> left;
+  for (int step = options.step.value_or(0);
+       step < (options.step ? *options.step + 1 : plan.steps()); ++step) {
+    for (const int64_t block : share_of(options, plan, step)) {
+      if (!tasks.done(step, block)) left.emplace_back(step, block);
+    }
+  }
+  interrupt.note_first();
+  CohortProgress progress("done: ", left.size(), options.quiet, "tasks");
+  size_t done = 0, restless = 0;
+  for (const auto& [step, block] : left) {
+    TaskRecord record;
+    if (!tasks.run(
+            step, block, [&] { return interrupt.interrupted(); }, record)) {
+      return interrupt.tell();
+    }
+    restless += record.converged ? 0 : 1;
+    progress.update(++done, "level " + std::to_string(plan.level_of(step)) + ", block " +
+                                BlockGrid::name_of(plan.grid.block_at(block)));
+    if (interrupt.interrupted()) return interrupt.tell();
+  }
+  if (!options.quiet) {
+    std::printf("done     %zu tasks in %.1f s, %zu of them not converged, %" PRId64
+                " bricks read\n",
+                done, progress.seconds(), restless, volume.bricks_read(context.get()));
+  }
+  return 0;
+}
+
+// ---- check ---------------------------------------------------------------------------------
+
+int run_check(const BlockOptions& options, InterruptGuard& interrupt) {
+  const BlockPlan plan = read_plan(options.folder);
+  interrupt.end_at_once();
+  plc_context_options context_options;
+  plc_context_options_defaults(&context_options);
+  const ContextHandle context = make_context(context_options);
+  BlockCheck check;
+  {
+    CohortProgress progress("checked", static_cast<size_t>(plan.grid.block_count()), options.quiet,
+                            "blocks");
+    check = check_blocks(options.folder, plan, plan.steps(), context.get(),
+                         [&](int64_t done) { progress.update(static_cast<size_t>(done), ""); });
+  }
+  const nlohmann::ordered_json json = {{"valid", check.valid()},
+                                       {"hash", hash_of_blocks(options.folder, plan)},
+                                       {"vertices", check.vertices},
+                                       {"faces", check.faces},
+                                       {"components", check.components},
+                                       {"inward_components", check.inward},
+                                       {"euler", check.euler},
+                                       {"genus", check.genus},
+                                       {"area_voxels", check.area},
+                                       {"volume_voxels", check.volume},
+                                       {"edge_min_voxels", check.edge_min},
+                                       {"edge_max_voxels", check.edge_max},
+                                       {"open_vertices", check.open_vertices},
+                                       {"degenerate_faces", check.degenerate_faces},
+                                       {"self_intersections", check.self_intersections},
+                                       {"stray_faces", check.stray_faces}};
+  if (options.json) {
+    std::puts(json.dump(2).c_str());
+  } else {
+    for (const auto& [key, value] : json.items()) {
+      std::string name = key;
+      std::replace(name.begin(), name.end(), '_', ' ');
+      std::printf("%-29s %s\n", name.c_str(),
+                  value.is_boolean()  ? value.get<bool>() ? "yes" : "no"
+                  : value.is_string() ? value.get<std::string>().c_str()
+                                      : value.dump().c_str());
+    }
+  }
+  return check.valid() ? 0 : 1;
+}
+
+// ---- mesh ----------------------------------------------------------------------------------
+
+std::vector<Int3> all_cells(const BlockGrid& grid) {
+  const Int3& n = grid.blocks();
+  return grid.cells_of({{0, 0, 0}, {3 * n[0] - 1, 3 * n[1] - 1, 3 * n[2] - 1}});
+}
+
+// Whether its axes are those of a left hand.
+bool mirrors(const plc_image& image) {
+  const double* d = image.direction;
+  return d[0] * (d[4] * d[8] - d[5] * d[7]) - d[1] * (d[3] * d[8] - d[5] * d[6]) +
+             d[2] * (d[3] * d[7] - d[4] * d[6]) <
+         0;
+}
+
+int run_mesh(const BlockOptions& options) {
+  check_mesh_path(options.mesh);
+  const BlockPlan plan = read_plan(options.folder);
+  const BlockMesh whole =
+      joined(cells_before(options.folder, plan, plan.steps(), all_cells(plan.grid)), "blocks");
+  TriangleMesh mesh;
+  mesh.xyz = whole.xyz;
+  mesh.abc = whole.abc;
+  if (options.space != PLC_SPACE_VOXEL) {
+    const plc_image& image = plan.image;
+    for (size_t v = 0; v < whole.vertex_count(); ++v) {
+      for (size_t i = 0; i < 3; ++i) {
+        double x = image.origin[i];
+        for (size_t a = 0; a < 3; ++a) {
+          x += image.direction[3 * i + a] * image.spacing[a] * whole.xyz[3 * v + a];
+        }
+        mesh.xyz[3 * v + i] = options.space == PLC_SPACE_RAS && i < 2 ? -x : x;
+      }
+    }
+    if (mirrors(image)) {
+      for (size_t f = 0; f < mesh.abc.size(); f += 3) std::swap(mesh.abc[f + 1], mesh.abc[f + 2]);
+    }
+  }
+  plc_context_options context_options;
+  plc_context_options_defaults(&context_options);
+  const ContextHandle context = make_context(context_options);
+  settle_surface(context.get(), mesh, options.space, options.mesh);
+  write_mesh(options.mesh, mesh);
+  std::printf("written  %s, %zu vertices, %zu faces\n", options.mesh.c_str(), whole.vertex_count(),
+              whole.face_count());
+  return 0;
+}
+
+void add_folder(CLI::App& app, std::string& folder) {
+  app.add_option("DIR", folder, "Folder of a plan by blocks")->required()->type_name("");
+}
+
+void add_plan(CLI::App& app, BlockOptions& options) {
+  add_extract_options(app, options.extract);
+  static const std::set<std::string> other = {
+      "output",          "space",     "nifti-frame", "report",  "trace",    "each-level",
+      "slicer-progress", "box",       "keep",        "feature", "sigma",    "init",
+      "attach",          "structure", "force",       "labels",  "gradient", "gradient-tangent",
+      "gradient-bound"};
+  std::vector<CLI::Option*> gone;
+  for (CLI::Option* option : app.get_options()) {
+    if (!option->get_lnames().empty() && other.contains(option->get_lnames()[0])) {
+      gone.push_back(option);
+    }
+  }
+  for (CLI::Option* option : gone) app.remove_option(option);
+  options.extract.output = "surface.ply";
+  app.add_option("-o,--output", options.folder, "Folder of the plan; made where it is not there")
+      ->required()
+      ->type_name("DIR")
+      ->group("Blocks");
+  app.add_option("--side", options.side, "Voxels of a block on each axis")
+      ->type_name("N")
+      ->default_str("512")
+      ->group("Blocks");
+  app.add_option("--from-level", options.from_level,
+                 "The coarsest level that is done by blocks; those above it are done by plan")
+      ->type_name("H")
+      ->default_str("1")
+      ->group("Blocks");
+}
+
+int at_least(int least, const std::string& option, const std::string& text) {
+  const int value = to_integer(option, text);
+  if (value < least) refuse_value(option, text, "at least " + std::to_string(least));
+  return value;
+}
+
+void add_run(CLI::App& app, BlockOptions& options) {
+  add_folder(app, options.folder);
+  const auto text = [&](const std::string& name, const std::string& type,
+                        const std::string& fallback, const std::string& meaning, auto read) {
+    app.add_option_function<std::string>(name, read, meaning)
+        ->type_name(type)
+        ->default_str(fallback);
+  };
+  text("--step", "S", "all, one after the other",
+       "The tasks of one step, of which every one can run at the same time as the others; all "
+       "steps before it must be done",
+       [&o = options](const std::string& s) { o.step = at_least(0, "--step", s); });
+  text("--task", "I/N", "1/1", "The I-th of N shares of the step, I from 1",
+       [&o = options](const std::string& s) {
+         const size_t slash = s.find('/');
+         if (slash == std::string::npos) refuse_value("--task", s, "I/N, as in 3/10");
+         o.part = at_least(1, "--task", s.substr(0, slash));
+         o.parts = at_least(1, "--task", s.substr(slash + 1));
+         if (o.part > o.parts) refuse_value("--task", s, "I/N with I not above N");
+       });
+  text("--threads", "N", "all", "Threads",
+       [&o = options](const std::string& s) { o.threads = at_least(1, "--threads", s); });
+  text("--memory", "SIZE", "what is left", "Memory of the process, as in 4G",
+       [&o = options](const std::string& s) { o.memory = to_bytes("--memory", s); });
+  app.add_flag("--quiet", options.quiet, "No progress and no summary");
+}
+
+}  // namespace
+
+void add_block_options(CLI::App& command, BlockOptions& options) {
+  command.require_subcommand(1);
+  add_plan(*command.add_subcommand("plan", "Do the coarse levels, and plan the tasks of the rest"),
+           options);
+  add_run(*command.add_subcommand("run", "Do the tasks that are left, or a share of them"),
+          options);
+  CLI::App* check =
+      command.add_subcommand("check", "Prove, block by block, that all are one valid surface");
+  add_folder(*check, options.folder);
+  check->add_flag("--json", options.json, "JSON instead of a table");
+  check->add_flag("--quiet", options.quiet, "No progress");
+  CLI::App* mesh = command.add_subcommand("mesh", "Write the surface of all blocks as one mesh");
+  add_folder(*mesh, options.folder);
+  mesh->add_option("-o,--output", options.mesh, mesh_suffixes(MeshUse::kWritten))
+      ->required()
+      ->type_name("FILE");
+  mesh->add_option_function<std::string>(
+          "--space",
+          [&options](const std::string& s) { options.space = to_choice("--space", s, kSpaces); },
+          "Of the coordinates")
+      ->type_name("lps|ras|voxel")
+      ->default_str("lps");
+}
+
+int run_block_command(const CLI::App& command, BlockOptions& options, InterruptGuard& interrupt) {
+  const std::string& name = command.get_subcommands()[0]->get_name();
+  if (name == "plan") return run_plan(options, interrupt);
+  if (name == "run") return run_tasks(options, interrupt);
+  if (name == "check") return run_check(options, interrupt);
+  return run_mesh(options);
+}
+
+}  // namespace plc::tools
