@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <utility>
 
 namespace plc::tools {
@@ -31,9 +32,17 @@ std::string duration_text(double seconds) {
   return text.data();
 }
 
-CohortProgress::CohortProgress(std::string what, size_t total, bool quiet, std::string things)
+std::string clock_text(double time) {
+  const auto whole = static_cast<std::time_t>(time);
+  std::tm local{};
+  localtime_r(&whole, &local);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M", &local);
+  return text.data();
+}
+
+CohortProgress::CohortProgress(std::string what, size_t total, bool quiet)
     : what_(std::move(what)),
-      things_(std::move(things)),
       total_(total),
       quiet_(quiet),
       terminal_(isatty(STDERR_FILENO) == 1),
@@ -51,8 +60,7 @@ void CohortProgress::update(size_t done, const std::string& note) {
   const double now = seconds();
   if (quiet_ || now < due_) return;
   due_ = now + (terminal_ ? kTerminalPeriod : kLinePeriod);
-  std::string line =
-      std::to_string(done) + " of " + std::to_string(total_) + " " + things_ + " " + what_ + note;
+  std::string line = std::to_string(done) + " of " + std::to_string(total_) + " " + what_ + note;
   if (done > 0 && done < total_) {
     const double left = now * static_cast<double>(total_ - done) / static_cast<double>(done);
     line += ", about " + duration_text(left) + " left";

@@ -1,4 +1,5 @@
-// How far a cohort is, on stderr: a line that is rewritten on a terminal, else one now and then.
+// How far a cohort, or an image by blocks, is, on stderr: a line that is rewritten on a terminal,
+// else one now and then.
 #pragma once
 #include <chrono>
 #include <cstddef>
@@ -8,11 +9,13 @@ namespace plc::tools {
 
 // "3 h 20 min", "12 min", "40 s".
 std::string duration_text(double seconds);
+// Of seconds since 1970: "2026-11-25 17:40".
+std::string clock_text(double time);
 
 class CohortProgress {
  public:
-  // `what` has been done with so many of `total` scans, or other things.
-  CohortProgress(std::string what, size_t total, bool quiet, std::string things = "scans");
+  // So many of `total`; `what`: "scans read".
+  CohortProgress(std::string what, size_t total, bool quiet);
   ~CohortProgress();  // leaves a terminal's line empty
   CohortProgress(const CohortProgress&) = delete;
   CohortProgress& operator=(const CohortProgress&) = delete;
@@ -26,7 +29,7 @@ class CohortProgress {
  private:
   void clear();
 
-  std::string what_, things_;
+  std::string what_;
   size_t total_;
   bool quiet_;
   bool terminal_;

@@ -82,7 +82,7 @@ class Planner {
       scan.stamp = within(row, ", column input: ", [&] { return stamp_of(scan.input); });
       manifest_.scans.push_back(scan);
     }
-    CohortProgress progress("read", manifest_.scans.size(), options_.quiet);
+    CohortProgress progress("scans read", manifest_.scans.size(), options_.quiet);
     for (size_t i = 0; i < manifest_.scans.size(); ++i) {
       Scan& scan = manifest_.scans[i];
       const Row& row = table_.rows[i];

@@ -47,7 +47,7 @@ class Runner {
         manifest_(manifest),
         interrupted_(interrupted),
         todo_(share()),
-        progress_("done", todo_.size(), options.quiet) {
+        progress_("scans done", todo_.size(), options.quiet) {
     if (options.jobs > 1) {
       threads_ = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / options.jobs);
     }

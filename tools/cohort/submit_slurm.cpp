@@ -12,8 +12,8 @@
 #include "tools/cohort/child.h"
 #include "tools/cohort/cohort_progress.h"
 #include "tools/cohort/scan_state.h"
+#include "tools/cohort/slurm.h"
 #include "tools/cohort/survey.h"
-#include "tools/file/atomic_file.h"
 #include "tools/file/failure.h"
 
 namespace plc::tools {
@@ -22,42 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMinute = 60;
-constexpr size_t kDefaultArraySize = 1001;  // Slurm's own
-constexpr int kPilots = 3;                  // are tried before it is given up
-
-std::string line_of(const std::vector<std::string>& words) {
-  std::string line;
-  for (const std::string& word : words) {
-    if (!line.empty()) line += ' ';
-    line += quoted(word);
-  }
-  return line;
-}
-
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw Failure{folder + ": cannot be made: " + error.message()};
-}
-
-void write_text(const std::string& path, const std::string& text) {
-  AtomicFile file(path);
-  file.write(text);
-  file.commit();
-}
-
-// The largest index of an array, and one.
-size_t array_size() {
-  std::string config;
-  if (run_program({"scontrol", "show", "config"}, config) != 0) return kDefaultArraySize;
-  std::istringstream lines(config);
-  for (std::string line; std::getline(lines, line);) {
-    if (!line.starts_with("MaxArraySize")) continue;
-    const size_t sign = line.find('=');
-    if (sign != std::string::npos) return std::max(2UL, std::stoul(line.substr(sign + 1)));
-  }
-  return kDefaultArraySize;
-}
+constexpr int kPilots = 3;  // are tried before it is given up
 
 // Of the node that has the most, in the partition that the options name; a job of more waits for
 // ever. 0 where sinfo does not tell.
@@ -109,20 +74,12 @@ class Submission {
     }
   }
 
-  std::string new_file(const std::string& suffix) const {
-    const std::string submitted = folder_.string() + "/submitted";
-    for (int number = 1;; ++number) {
-      const std::string path = submitted + "/" + std::to_string(number);
-      if (!fs::exists(path + ".txt") && !fs::exists(path + ".sh")) return path + suffix;
-    }
-  }
-
   // The largest scan, alone on a node. False: it has only been printed.
   bool pilot() {
     const Scan* largest = *std::max_element(
         left_.begin(), left_.end(),
         [](const Scan* a, const Scan* b) { return a->stamp.bytes < b->stamp.bytes; });
-    const std::string names = new_file(".txt");
+    const std::string names = new_submission(folder_) + ".txt";
     std::vector<std::string> words = {"srun", "--job-name=pellicle-pilot", "--ntasks=1",
                                       "--cpus-per-task=1"};
     words.insert(words.end(), options_.slurm.begin(), options_.slurm.end());
@@ -171,7 +128,7 @@ class Submission {
     longest /= cores_;
     per_task_ = std::max<size_t>(1, static_cast<size_t>(task / mean));
     tasks_ = (left_.size() + per_task_ - 1) / per_task_;
-    const size_t most = array_size() - 1;
+    const size_t most = most_array_tasks();
     if (tasks_ > most) {
       std::printf("# MaxArraySize allows %zu tasks: each takes longer than %g minutes\n", most,
                   options_.minutes);
@@ -198,18 +155,9 @@ class Submission {
 
   std::string script(const std::string& names) const {
     std::ostringstream text;
-    text << "#!/bin/bash\n"
-         << "#SBATCH --job-name=pellicle\n"
-         << "#SBATCH --array=1-" << tasks_ << "\n"
-         << "#SBATCH --ntasks=1\n"
-         << "#SBATCH --cpus-per-task=" << cores_ << "\n"
-         << "#SBATCH --mem=" << static_cast<int64_t>(mebibytes_) << "M\n"
-         << "#SBATCH --time=" << static_cast<int64_t>(minutes_) << "\n"
-         << "#SBATCH --signal=B:TERM@60\n"
-         << "#SBATCH --requeue\n"
-         << "#SBATCH --open-mode=append\n"
-         << "#SBATCH --output=" << quoted(folder_.string() + "/logs/%A_%a.log") << "\n";
-    for (const std::string& option : options_.slurm) text << "#SBATCH " << option << "\n";
+    text << slurm_head({"pellicle", "1-" + std::to_string(tasks_), cores_,
+                        static_cast<int64_t>(mebibytes_), static_cast<int64_t>(minutes_),
+                        folder_.string() + "/logs/%A_%a.log", options_.slurm});
     text << "exec " << line_of({own_program(), "cohort", "run", folder_, "--scans=" + names})
          << " --task=\"$SLURM_ARRAY_TASK_ID/" << tasks_ << "\" --threads=" << cores_
          << (options_.retry_failed ? " --retry-failed" : "") << "\n";
@@ -217,8 +165,8 @@ class Submission {
   }
 
   void submit() {
-    const std::string names = new_file(".txt");
-    const std::string file = names.substr(0, names.size() - 4) + ".sh";
+    const std::string base = new_submission(folder_);
+    const std::string names = base + ".txt", file = base + ".sh";
     std::string list;
     for (const Scan* scan : left_) list += scan->name + "\n";
     const std::string text = script(names);
@@ -233,15 +181,14 @@ class Submission {
     write_text(names, list);
     write_text(file, text);
     std::string job;
-    const int code = run_program(words, job);
-    if (code != 0) {
+    try {
+      job = submit_job(words);
+    } catch (...) {
       std::error_code none;
       fs::remove(names, none);
       fs::remove(file, none);
-      throw Failure{"sbatch: ends with exit code " + std::to_string(code) +
-                    "; nothing has been submitted"};
+      throw;
     }
-    job = job.substr(0, job.find_first_of(";\n"));
     std::printf("# submitted as job %s; pellicle cohort status %s\n", job.c_str(),
                 quoted(folder_).c_str());
   }

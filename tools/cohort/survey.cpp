@@ -28,16 +28,6 @@ double pace_of(std::vector<double> ended, double mean, double now) {
   return count / std::max(1.0, std::min(window, now - *first + mean));
 }
 
-// "2026-11-25 17:40"
-std::string clock_text(double time) {
-  const auto whole = static_cast<std::time_t>(time);
-  std::tm local{};
-  localtime_r(&whole, &local);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M", &local);
-  return text.data();
-}
-
 }  // namespace
 
 Survey survey_of(const std::string& folder, const Manifest& manifest, std::time_t now) {
