@@ -3,7 +3,8 @@
 #   slurm_local.sh start DIR    as root; prints what to eval: export SLURM_CONF=DIR/slurm.conf
 #   slurm_local.sh stop DIR     ends what was started
 # munged, slurmctld and slurmd run on 127.0.0.1, with sockets, keys, state and logs under DIR and ports of
-# their own, beside whatever else of them runs. MaxArraySize is 11, so that tests meet it.
+# their own, beside whatever else of them runs. MaxArraySize is 11, so that tests meet it;
+# what is queued again waits for 5 seconds (cred_expire), not for two minutes.
 set -euo pipefail
 what=${1:?start or stop}
 dir=$(realpath -m "${2:?DIR}")
@@ -22,7 +23,7 @@ SlurmctldHost=$host(127.0.0.1)
 SlurmctldPort=$port
 SlurmdPort=$((port + 1))
 AuthType=auth/munge
-AuthInfo=socket=$dir/munge.socket
+AuthInfo=socket=$dir/munge.socket,cred_expire=5
 CryptoType=crypto/munge
 ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none

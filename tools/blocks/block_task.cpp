@@ -109,6 +109,13 @@ bool BlockTasks::done(int step, int64_t block) const {
   return fs::exists(block_path(folder_, plan_, step, plan_.grid.block_at(block)));
 }
 
+// A volume that is held whole has no bricks.
+int64_t BlockTasks::bricks_read() const {
+  plc_brick_counts counts;
+  plc_brick_counts_defaults(&counts);
+  return plc_volume_brick_counts(context_, volume_, &counts) == PLC_OK ? counts.read : 0;
+}
+
 const plc_pyramid* BlockTasks::pyramid_of(int level) {
   if (level_ == level) return pyramid_.get();
   pyramid_.reset();
@@ -192,6 +199,7 @@ bool BlockTasks::run(int step, int64_t block, const std::function<bool()>& cance
                      TaskRecord& record) {
   const auto start = std::chrono::steady_clock::now();
   record = {};
+  const int64_t read_before = bricks_read();
   const Int3 at = plan_.grid.block_at(block);
   const std::string what = name_of(plan_, step, at);
   const BlockGrid::Window window = plan_.grid.window_of(at);
@@ -215,8 +223,13 @@ bool BlockTasks::run(int step, int64_t block, const std::function<bool()>& cance
     }
   }
   demand(plc_context_memory(context_, nullptr, &record.peak_bytes));
+  record.bricks_read = bricks_read() - read_before;
   record.seconds = seconds_since(start);
-  write_block_file(block_path(folder_, plan_, step, at), cells);
+  using Clock = std::chrono::system_clock;
+  record.ended = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+  const std::string path = block_path(folder_, plan_, step, at);
+  write_record(path, record);
+  write_block_file(path, cells);  // last: it says that the task is done
   return true;
 }
 

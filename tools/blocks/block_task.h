@@ -9,18 +9,9 @@
 
 #include "engine/pellicle.h"
 #include "tools/blocks/block_plan.h"
+#include "tools/blocks/block_record.h"
 
 namespace plc::tools {
-
-// What is told of a task, beside its file.
-struct TaskRecord {
-  int64_t vertices = 0, free = 0;  // of the window before, and of them those that may move
-  int64_t after = 0;               // vertices of the window
-  int64_t iterations = 0;
-  bool converged = true;
-  double seconds = 0;
-  int64_t bricks_read = 0, peak_bytes = 0;
-};
 
 // The tasks of one process, one after the other. The volume is the image of the plan, and is read
 // where a surface is; of bricks, with the range that the plan tells.
@@ -30,6 +21,7 @@ class BlockTasks {
   BlockTasks(std::string folder, BlockPlan plan, plc_context* context, const plc_volume* volume);
 
   const BlockPlan& plan() const { return plan_; }
+  const std::string& folder() const { return folder_; }
   bool done(int step, int64_t block) const;
   // All tasks of earlier steps whose windows touch this one must be done. Where the task is done
   // already it is run again, and writes the same file. cancelled: asked now and then; where it says
@@ -47,6 +39,7 @@ class BlockTasks {
   using Surface = std::unique_ptr<plc_surface, Deleter>;
 
   void demand(plc_status status) const;
+  int64_t bricks_read() const;
   const plc_pyramid* pyramid_of(int level);
   Surface evolve(const Patch& patch, int level, const BlockGrid::Window& window,
                  const std::function<bool()>& cancelled, TaskRecord& record);

@@ -12,6 +12,7 @@
 #include "tools/blocks/block_plan.h"
 #include "tools/blocks/block_task.h"
 #include "tools/cohort/cohort_progress.h"
+#include "tools/command/block_jobs.h"
 #include "tools/command/clock.h"
 #include "tools/command/engine_handles.h"
 #include "tools/command/extract_inputs.h"
@@ -218,6 +219,9 @@ int run_tasks(const BlockOptions& options, InterruptGuard& interrupt) {
   if (options.parts > 1 && !options.step) {
     throw Failure{"--task: of a step, which --step tells: steps wait for each other"};
   }
+  if (options.serve && (options.step || options.parts > 1)) {
+    throw Failure{"--serve: does what stdin names, without --step and --task"};
+  }
   interrupt.end_at_once();
   BlockVolume volume(plan);
   ExtractOptions limits;
@@ -228,6 +232,7 @@ int run_tasks(const BlockOptions& options, InterruptGuard& interrupt) {
   context_options.memory_limit = memory_limit(limits, volume.held());
   const ContextHandle context = make_context(context_options);
   BlockTasks tasks(options.folder, plan, context.get(), volume.open(context.get(), plan));
+  if (options.serve) return serve_tasks(tasks, interrupt);
   std::vector<std::pair<int, int64_t>> left;
   for (int step = options.step.value_or(0);
        step < (options.step ? *options.step + 1 : plan.steps()); ++step) {
@@ -236,7 +241,7 @@ int run_tasks(const BlockOptions& options, InterruptGuard& interrupt) {
     }
   }
   interrupt.note_first();
-  CohortProgress progress("done: ", left.size(), options.quiet, "tasks");
+  CohortProgress progress("tasks done, ", left.size(), options.quiet);
   size_t done = 0, restless = 0;
   for (const auto& [step, block] : left) {
     TaskRecord record;
@@ -267,8 +272,8 @@ int run_check(const BlockOptions& options, InterruptGuard& interrupt) {
   const ContextHandle context = make_context(context_options);
   BlockCheck check;
   {
-    CohortProgress progress("checked", static_cast<size_t>(plan.grid.block_count()), options.quiet,
-                            "blocks");
+    CohortProgress progress("blocks checked", static_cast<size_t>(plan.grid.block_count()),
+                            options.quiet);
     check = check_blocks(options.folder, plan, plan.steps(), context.get(),
                          [&](int64_t done) { progress.update(static_cast<size_t>(done), ""); });
   }
@@ -415,6 +420,10 @@ void add_run(CLI::App& app, BlockOptions& options) {
        [&o = options](const std::string& s) { o.threads = at_least(1, "--threads", s); });
   text("--memory", "SIZE", "what is left", "Memory of the process, as in 4G",
        [&o = options](const std::string& s) { o.memory = to_bytes("--memory", s); });
+  app.add_flag(
+      "--serve", options.serve,
+      "Tasks that stdin names, a line STEP BLOCK each, until it ends: each is answered by a "
+      "line of JSON, for schedulers that keep a process for many tasks");
   app.add_flag("--quiet", options.quiet, "No progress and no summary");
 }
 
@@ -431,6 +440,12 @@ void add_block_options(CLI::App& command, BlockOptions& options) {
   add_folder(*check, options.folder);
   check->add_flag("--json", options.json, "JSON instead of a table");
   check->add_flag("--quiet", options.quiet, "No progress");
+  add_block_status(
+      *command.add_subcommand("status", "Tell which tasks are done, and when the rest is"),
+      options);
+  add_block_submit(
+      *command.add_subcommand("submit", "Run what is left as job arrays of Slurm, one a step"),
+      options);
   CLI::App* mesh = command.add_subcommand("mesh", "Write the surface of all blocks as one mesh");
   add_folder(*mesh, options.folder);
   mesh->add_option("-o,--output", options.mesh, mesh_suffixes(MeshUse::kWritten))
@@ -449,6 +464,8 @@ int run_block_command(const CLI::App& command, BlockOptions& options, InterruptG
   if (name == "plan") return run_plan(options, interrupt);
   if (name == "run") return run_tasks(options, interrupt);
   if (name == "check") return run_check(options, interrupt);
+  if (name == "status") return run_block_status(options);
+  if (name == "submit") return run_block_submit(options);
   return run_mesh(options);
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "tools/blocks/submit_blocks.h"
 #include "tools/command/extract_options.h"
 #include "tools/command/interrupt.h"
 
@@ -19,11 +20,13 @@ struct BlockOptions {
   int threads = 0;
   std::optional<int64_t> memory;  // bytes
   bool quiet = false, json = false;
+  bool serve = false;  // tasks that stdin names
+  BlockSubmit submit;
   std::string mesh;  // that `mesh` writes
   plc_space space = PLC_SPACE_LPS;
 };
 
-// Declares plan, run, status, check and mesh under `command`.
+// Declares plan, run, status, submit, check and mesh under `command`.
 void add_block_options(CLI::App& command, BlockOptions& options);
 
 // Returns the exit code: 1 where tasks are left, or the surface is not valid. Throws Failure.

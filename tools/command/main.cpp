@@ -121,7 +121,8 @@ class Command {
                     "render, view, cohort or blocks");
       }
       if (blocks_->parsed() && blocks_->get_subcommands().empty()) {
-        return fail("blocks: what is to be done is one of plan, run, status, check or mesh");
+        return fail(
+            "blocks: what is to be done is one of plan, run, status, submit, check or mesh");
       }
       if (cohort_->parsed() && cohort_->get_subcommands().empty()) {
         return fail("cohort: what is to be done is one of plan, run, status, collect or submit");
