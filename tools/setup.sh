@@ -13,6 +13,7 @@ test=(catch2 invesalius-examples jq mricron-data pkg-config python3)
 python=(python3-dev pybind11-dev python3-numpy python3-nibabel python3-pip python3-venv python3-setuptools
   python3-wheel python3-pytest python3-mypy)
 python+=(python3-nbconvert python3-ipykernel python3-meshio)  # the tutorial; one that takes meshes
+python+=(python3-distributed)  # what runs pellicle.distributed
 demo=(invesalius-examples)
 test+=(python3-nibabel python3-zarr gmsh tetgen man-db)  # that read what the command writes
 lint=(clang-format clang-tidy)

@@ -31,7 +31,7 @@ SYSTEM_PYTHON = "/usr/bin/python3"
 
 def python_lacks():
     """What test_python.sh asks for, too, but what only its own tests need."""
-    modules = ("ensurepip", "nibabel", "numpy", "pip", "setuptools", "venv", "wheel")
+    modules = ("distributed", "ensurepip", "nibabel", "numpy", "pip", "setuptools", "venv", "wheel")
     asked = subprocess.run(
         [SYSTEM_PYTHON, "-c", "import importlib.util, sys, sysconfig\n"
          "print(*[n for n in sys.argv[1:] if not importlib.util.find_spec(n)])\n"

@@ -2,11 +2,13 @@
 
 ``read`` reads an image and ``extract`` makes a surface of it in one call, ``extract_labels`` one of
 each label; ``Volume``, ``Pyramid`` and ``Run`` make it in
-steps of any size. ``check_mesh``, ``component_measures``, ``curvature``, ``geodesic``, ``distance``
+steps of any size. ``distributed.extract`` takes an image that is too large for one machine.
+``check_mesh``, ``component_measures``, ``curvature``, ``geodesic``, ``distance``
 and ``nearest_vertex`` measure any mesh. Images are arrays indexed [z, y, x], or [x, y, z] with
 ``order="xyz"``; coordinates, spacing and all other triples are x, y, z.
 """
 
+from . import distributed
 from ._context import Context
 from ._errors import (
     Cancelled,
@@ -97,6 +99,7 @@ __all__ = [
     "component_measures",
     "curvature",
     "distance",
+    "distributed",
     "extract",
     "extract_labels",
     "geodesic",

@@ -80,6 +80,19 @@ def _ply(vertices: Floats, normals: Floats, faces: Faces, space: str) -> bytes:
     return "\n".join(header).encode() + points.tobytes() + corners.tobytes()
 
 
+def parsed_ply(data: bytes) -> tuple[Floats, Faces]:
+    """Vertices and faces of a file as the command writes it, without normals."""
+    head, _, body = data.partition(b"end_header\n")
+    lines = head.decode().splitlines()
+    count = {line.split()[1]: int(line.split()[2]) for line in lines if line.startswith("element ")}
+    place = np.dtype("<f8" if "property double x" in lines else "<f4")
+    vertices = np.frombuffer(body, place, 3 * count["vertex"]).reshape(-1, 3)
+    corners = np.frombuffer(
+        body, [("count", "u1"), ("face", "<u4", 3)], count["face"], vertices.nbytes
+    )
+    return vertices, corners["face"]
+
+
 def _stl(vertices: Floats, normals: Floats, faces: Faces, space: str) -> bytes:
     corners = vertices.astype(np.float64)[faces]
     u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
