@@ -60,7 +60,7 @@ size_t most_array_tasks() {
 
 std::string new_submission(const std::string& folder) {
   for (int number = 1;; ++number) {
-    const std::string path = folder + "/submitted/" + std::to_string(number);
+    std::string path = folder + "/submitted/" + std::to_string(number);
     if (!fs::exists(path + ".txt") && !fs::exists(path + ".sh")) return path;
   }
 }
