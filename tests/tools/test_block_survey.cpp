@@ -106,7 +106,8 @@ TEST_CASE("The time that is left follows the pace, the level and the order of st
   const RunFolder folder(plan);
   // 30 seconds each; five have ended within the last minute.
   for (const int step : {0, 1, 2}) {
-    for (const size_t task : {size_t{0}, size_t{1}}) folder.finish(step, task, 30, kNow - 60 + 30 * step);
+    for (const size_t task : {size_t{0}, size_t{1}})
+      folder.finish(step, task, 30, kNow - 60 + 30 * step);
   }
   folder.finish(3, 0, 30, kNow, false);
   const BlockSurvey survey = plc::tools::survey_of(folder.path(), plan, kNow);
