@@ -8,7 +8,7 @@ set -euo pipefail
 
 build=(g++ cmake make libhwy-dev libtbb-dev libmimalloc2.0 libinsighttoolkit5-dev libarchive-dev
   libexpat1-dev zlib1g-dev libembree-dev libpng-dev libcli11-dev nlohmann-json3-dev libxxhash-dev
-  libblosc-dev libzstd-dev)
+  libblosc-dev libzstd-dev libdraco-dev)
 test=(catch2 invesalius-examples jq mricron-data pkg-config python3)
 python=(python3-dev pybind11-dev python3-numpy python3-nibabel python3-pip python3-venv python3-setuptools
   python3-wheel python3-pytest python3-mypy)

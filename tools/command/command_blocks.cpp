@@ -1,6 +1,7 @@
 #include "tools/command/command_blocks.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
@@ -356,6 +357,25 @@ int run_mesh(const BlockOptions& options) {
   return 0;
 }
 
+// ---- precomputed ---------------------------------------------------------------------------
+
+int run_precomputed(BlockOptions& options) {
+  const BlockPlan plan = read_plan(options.folder);
+  std::optional<CohortProgress> progress;
+  options.precomputed.progress = [&](size_t done, size_t all) {
+    if (!progress) progress.emplace("boxes", all, options.quiet);
+    progress->update(done, "");
+  };
+  const PrecomputedRecord record = write_precomputed(options.folder, plan, options.precomputed);
+  progress.reset();
+  for (size_t lod = 0; lod < record.lods.size() && !options.quiet; ++lod) {
+    const PrecomputedRecord::Lod& l = record.lods[lod];
+    std::printf("lod %-4zu %" PRId64 " chunks of %g voxels, %" PRId64 " faces, %" PRId64 " bytes\n",
+                lod, l.fragments, l.chunk, l.faces, l.bytes);
+  }
+  return 0;
+}
+
 void add_folder(CLI::App& app, std::string& folder) {
   app.add_option("DIR", folder, "Folder of a plan by blocks")->required()->type_name("");
 }
@@ -427,6 +447,31 @@ void add_run(CLI::App& app, BlockOptions& options) {
   app.add_flag("--quiet", options.quiet, "No progress and no summary");
 }
 
+void add_precomputed(CLI::App& app, BlockOptions& options) {
+  add_folder(app, options.folder);
+  PrecomputedOptions& to = options.precomputed;
+  app.add_option("-o,--output", to.output, "Folder of the meshes; made where it is not there")
+      ->required()
+      ->type_name("FOLDER");
+  app.add_option_function<std::string>(
+         "--lods", [&to](const std::string& s) { to.lods = at_least(1, "--lods", s); },
+         "Levels of detail")
+      ->type_name("N")
+      ->default_str("until one chunk holds everything");
+  app.add_option_function<std::string>(
+         "--segment",
+         [&to](const std::string& s) {
+           const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), to.segment);
+           if (error != std::errc() || end != s.data() + s.size() || to.segment == 0) {
+             refuse_value("--segment", s, "a number of 1 to 2^64 - 1");
+           }
+         },
+         "Its number in neuroglancer")
+      ->type_name("ID")
+      ->default_str("1");
+  app.add_flag("--quiet", options.quiet, "No progress and no summary");
+}
+
 }  // namespace
 
 void add_block_options(CLI::App& command, BlockOptions& options) {
@@ -457,6 +502,8 @@ void add_block_options(CLI::App& command, BlockOptions& options) {
           "Of the coordinates")
       ->type_name("lps|ras|voxel")
       ->default_str("lps");
+  add_precomputed(*command.add_subcommand("precomputed", "Write the surface for neuroglancer"),
+                  options);
 }
 
 int run_block_command(const CLI::App& command, BlockOptions& options, InterruptGuard& interrupt) {
@@ -466,6 +513,7 @@ int run_block_command(const CLI::App& command, BlockOptions& options, InterruptG
   if (name == "check") return run_check(options, interrupt);
   if (name == "status") return run_block_status(options);
   if (name == "submit") return run_block_submit(options);
+  if (name == "precomputed") return run_precomputed(options);
   return run_mesh(options);
 }
 

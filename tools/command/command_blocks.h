@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "tools/blocks/precomputed.h"
 #include "tools/blocks/submit_blocks.h"
 #include "tools/command/extract_options.h"
 #include "tools/command/interrupt.h"
@@ -24,9 +25,10 @@ struct BlockOptions {
   BlockSubmit submit;
   std::string mesh;  // that `mesh` writes
   plc_space space = PLC_SPACE_LPS;
+  PrecomputedOptions precomputed;
 };
 
-// Declares plan, run, status, submit, check and mesh under `command`.
+// Declares plan, run, status, submit, check, mesh and precomputed under `command`.
 void add_block_options(CLI::App& command, BlockOptions& options);
 
 // Returns the exit code: 1 where tasks are left, or the surface is not valid. Throws Failure.

@@ -122,7 +122,8 @@ class Command {
       }
       if (blocks_->parsed() && blocks_->get_subcommands().empty()) {
         return fail(
-            "blocks: what is to be done is one of plan, run, status, submit, check or mesh");
+            "blocks: what is to be done is one of plan, run, status, submit, check, mesh or "
+            "precomputed");
       }
       if (cohort_->parsed() && cohort_->get_subcommands().empty()) {
         return fail("cohort: what is to be done is one of plan, run, status, collect or submit");
