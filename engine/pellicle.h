@@ -515,8 +515,8 @@ typedef struct plc_extras {
   int64_t obstacle_face_count;
   double obstacle_gap; /* 0 .. 1, in delta: what lies nearer at the start comes no nearer */
   /* PLC_INIT_MESH: the mesh is a patch of a larger surface. One value per vertex, not 0: the vertex
-     is held. It stays where it is, to the bit, with all faces around it, and the rest evolves
-     against it; the mesh is not brought to satisfy (1)-(3) as a whole before. A patch may be open
+     is held. It stays where it is, to the bit, as does every face of three of them, and the rest
+     evolves against it; the mesh is not brought to satisfy (1)-(3) as a whole before. A patch may be open
      where vertices of borders, and their neighbours, are held. Every border is then closed by
      vertices of the engine's own, which the surface has, too, but without faces: see
      plc_surface_patch(). Late bubbles start within the room alone; the run cannot be saved. */

@@ -50,7 +50,7 @@ bool should_invert(const Mesh& mesh, const Edge& e, float squared_length) {
 
 std::optional<Candidate> edge_candidate(const Mesh& mesh, uint32_t u, uint32_t k) {
   const Edge e = edge_at(mesh, u, k);
-  if (mesh.is_held(u) || mesh.is_held(e.v)) return std::nullopt;
+  if (mesh.is_held(u) && mesh.is_held(e.v)) return std::nullopt;
   const float delta = mesh.size_between(u, e.v);
   const float shortest = delta * delta;
   const float longest = kMaxEdge * kMaxEdge * delta * delta;

@@ -79,7 +79,7 @@ class Mesh {
   Buffer<uint8_t> turns;
   Buffer<uint32_t> cut_id;
   Buffer<uint32_t> cut_iteration;
-  // A patch of a larger surface: vertices that stay where they are, with all faces around them.
+  // A patch of a larger surface: vertices that stay where they are, with all faces between them.
   // 0: free; else 1 + the vertex's id in what was imported, or kAbsent. Empty: all are free.
   Buffer<uint32_t> held;
   // Of a vertex that closes a border of the patch: its faces are not of the surface.

@@ -97,12 +97,6 @@ TinyComponents::Stays Resolution::staying() const {
   };
 }
 
-// Whether the footprint has a vertex that is held: the faces around it are to stay.
-bool Resolution::touches_held() const {
-  return mesh_.is_patch() && std::any_of(footprint_.begin(), footprint_.end(),
-                                         [this](uint32_t v) { return mesh_.is_held(v); });
-}
-
 void Resolution::queue_violated_edges() {
   assert(std::is_sorted(detection_.due().begin(), detection_.due().end()));
   edge_queue_.clear();
@@ -246,7 +240,7 @@ void Resolution::try_candidates(const Candidate* candidates, size_t count, size_
   for (size_t i = 0; i < count; ++i) {
     trial[i] = Trials::kUntried;
     if (!Trials::can_try(mesh_, candidates[i]) || !free_footprint(candidates[i], claim)) continue;
-    if (touches_held()) continue;
+    if (mesh_.is_patch() && !spares_held(mesh_, candidates[i])) continue;
     for (const uint32_t v : footprint_) stamp_[v] = claim;
     trial[i] = tried_.size();
     tried_.push_back(&candidates[i]);
@@ -265,7 +259,7 @@ void Resolution::apply_in_turn(const Candidate& candidate, size_t trial, Vector<
     later.push_back(candidate.edge.v);
     return;
   }
-  if (touches_held()) return;
+  if (mesh_.is_patch() && !spares_held(mesh_, candidate)) return;
   if (!within_limit(candidate)) {
     ++counts.deferred;
     return;

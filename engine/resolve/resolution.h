@@ -33,7 +33,6 @@ class Resolution {
 
  private:
   TinyComponents::Stays staying() const;
-  bool touches_held() const;
   void queue_violated_edges();
   void resolve_edges(OperationCounts& counts);
   bool resolve_pairs(bool first, OperationCounts& counts);

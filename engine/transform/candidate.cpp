@@ -18,6 +18,29 @@ void visit_corners(const Candidate& candidate, const Visit& visit) {
 
 }  // namespace
 
+bool spares_held(const Mesh& mesh, const Candidate& candidate) {
+  const Edge& e = candidate.edge;
+  const bool u = mesh.is_held(e.u), v = mesh.is_held(e.v);
+  switch (candidate.operation) {
+    case Operation::kCreation:
+      return !(u && v && (mesh.is_held(e.a) || mesh.is_held(e.b)));
+    case Operation::kInversion: {
+      const bool a = mesh.is_held(e.a), b = mesh.is_held(e.b);
+      return !(u && v && (a || b)) && !(a && b && (u || v));
+    }
+    case Operation::kDeletion:
+      // Where an apex has valence 3 a tetrahedron is deleted.
+      return !u && !v &&
+             ((mesh.valence(e.a) > 3 && mesh.valence(e.b) > 3) ||
+              (!mesh.is_held(e.a) && !mesh.is_held(e.b)));
+    case Operation::kAnnular:
+      return !u && !v && !mesh.is_held(e.a);
+    case Operation::kAxial:
+      break;
+  }
+  return !u && !v;
+}
+
 bool goes_in_circles(const Mesh& mesh, const Candidate& candidate) {
   if (candidate.operation != Operation::kAnnular && candidate.operation != Operation::kAxial) {
     return false;

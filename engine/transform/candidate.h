@@ -19,6 +19,8 @@ enum class Operation : uint8_t {
 struct Candidate;
 // Whether no vertex would get more neighbours than it may have; axial ones with a few to spare.
 bool fits_neighbors(const Mesh& mesh, const Candidate& candidate);
+// Of a patch: whether it leaves all held vertices, and all faces of three of them, as they are.
+bool spares_held(const Mesh& mesh, const Candidate& candidate);
 // Whether a vertex of it has turned too often for it (turns.h): what goes round in circles stays as
 // it is, rather joined than cut. Then its vertices are to be frozen.
 bool goes_in_circles(const Mesh& mesh, const Candidate& candidate);

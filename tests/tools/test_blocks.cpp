@@ -57,6 +57,10 @@ TEST_CASE("every place is in one cell, and every cell in the windows around it",
           for (size_t a = 0; a < 3; ++a) within = within && at[a] >= low[a] && at[a] < high[a];
           REQUIRE(within == window.contains(cell));
         }
+        std::array<double, 3> low{}, high{};
+        grid.bounds_of({cell, cell}, low, high);
+        REQUIRE((x >= low[0] && x < high[0] && y >= low[1] && y < high[1] && z >= low[2] &&
+                 z < high[2]));
       }
     }
   }

@@ -122,7 +122,8 @@ void BlockGrid::bounds_of(const Window& window, std::array<double, 3>& low,
       return static_cast<double>(block * side_ + within);
     };
     low[a] = window.low[a] == 0 ? -kFar : start(window.low[a]);
-    high[a] = window.high[a] + 1 == kParts * blocks_[a] ? kFar : start(window.high[a] + 1);
+    // The last block on an axis has no third part.
+    high[a] = window.high[a] + 2 >= kParts * blocks_[a] ? kFar : start(window.high[a] + 1);
   }
 }
 

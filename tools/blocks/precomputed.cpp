@@ -16,6 +16,7 @@
 #include "tools/blocks/vertex_clusters.h"
 #include "tools/file/atomic_file.h"
 #include "tools/file/failure.h"
+#include "tools/volume/mesh_spaces.h"
 
 namespace plc::tools {
 
@@ -99,7 +100,7 @@ Place place_of(const BlockCell& cell, size_t v) {
 Cells cells_of_box(const std::string& folder, const BlockPlan& plan, const ChunkGrid& grid,
                    const Int3& box) {
   Cells cells = cells_before(folder, plan, plan.steps(), grid.cells_around(box));
-  const bool mirrored = is_mirrored(plan.image);
+  const bool mirrored = mirrors(plan.image);
   for (auto& [at, cell] : cells) {
     if (!grid.holds(at, cell)) {
       throw Failure{folder + ": a face leaves its cell by more than " +

@@ -77,13 +77,6 @@ std::string info_of(const plc_image& image) {
   return info.dump() + "\n";
 }
 
-bool is_mirrored(const plc_image& image) {
-  const double* d = image.direction;
-  return d[0] * (d[4] * d[8] - d[5] * d[7]) - d[1] * (d[3] * d[8] - d[5] * d[6]) +
-             d[2] * (d[3] * d[7] - d[4] * d[6]) <
-         0;
-}
-
 SpoolFile::SpoolFile(const std::string& folder) : folder_(folder) {
   std::string name = folder + "/.pellicle-XXXXXX";
   descriptor_ = mkstemp(name.data());

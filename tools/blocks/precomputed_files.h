@@ -28,8 +28,6 @@ std::string manifest_of(const ChunkGrid& grid, std::vector<FragmentTable>& table
 
 // From voxels to nm along the axes of LPS, the matrix by rows.
 std::string info_of(const plc_image& image);
-// Whether its axes are those of a left hand.
-bool is_mirrored(const plc_image& image);
 
 // Bytes that wait on the disk until what comes before them is there. Gone with the process.
 class SpoolFile {

@@ -24,6 +24,7 @@
 #include "tools/command/surface_mesh.h"
 #include "tools/file/failure.h"
 #include "tools/mesh/mesh_io.h"
+#include "tools/volume/mesh_spaces.h"
 
 namespace plc::tools {
 
@@ -316,14 +317,6 @@ std::vector<Int3> all_cells(const BlockGrid& grid) {
   return grid.cells_of({{0, 0, 0}, {3 * n[0] - 1, 3 * n[1] - 1, 3 * n[2] - 1}});
 }
 
-// Whether its axes are those of a left hand.
-bool mirrors(const plc_image& image) {
-  const double* d = image.direction;
-  return d[0] * (d[4] * d[8] - d[5] * d[7]) - d[1] * (d[3] * d[8] - d[5] * d[6]) +
-             d[2] * (d[3] * d[7] - d[4] * d[6]) <
-         0;
-}
-
 int run_mesh(const BlockOptions& options) {
   check_mesh_path(options.mesh);
   const BlockPlan plan = read_plan(options.folder);
@@ -332,21 +325,8 @@ int run_mesh(const BlockOptions& options) {
   TriangleMesh mesh;
   mesh.xyz = whole.xyz;
   mesh.abc = whole.abc;
-  if (options.space != PLC_SPACE_VOXEL) {
-    const plc_image& image = plan.image;
-    for (size_t v = 0; v < whole.vertex_count(); ++v) {
-      for (size_t i = 0; i < 3; ++i) {
-        double x = image.origin[i];
-        for (size_t a = 0; a < 3; ++a) {
-          x += image.direction[3 * i + a] * image.spacing[a] * whole.xyz[3 * v + a];
-        }
-        mesh.xyz[3 * v + i] = options.space == PLC_SPACE_RAS && i < 2 ? -x : x;
-      }
-    }
-    if (mirrors(image)) {
-      for (size_t f = 0; f < mesh.abc.size(); f += 3) std::swap(mesh.abc[f + 1], mesh.abc[f + 2]);
-    }
-  }
+  mesh.space = space_name(PLC_SPACE_VOXEL);
+  bring_to(mesh, options.space, options.space, &plan.image, options.mesh);
   plc_context_options context_options;
   plc_context_options_defaults(&context_options);
   const ContextHandle context = make_context(context_options);
@@ -363,7 +343,7 @@ int run_precomputed(BlockOptions& options) {
   const BlockPlan plan = read_plan(options.folder);
   std::optional<CohortProgress> progress;
   options.precomputed.progress = [&](size_t done, size_t all) {
-    if (!progress) progress.emplace("boxes", all, options.quiet);
+    if (!progress) progress.emplace("boxes written", all, options.quiet);
     progress->update(done, "");
   };
   const PrecomputedRecord record = write_precomputed(options.folder, plan, options.precomputed);

@@ -24,13 +24,6 @@ void turn_faces(TriangleMesh& mesh) {
   for (size_t i = 0; i + 2 < mesh.abc.size(); i += 3) std::swap(mesh.abc[i + 1], mesh.abc[i + 2]);
 }
 
-bool mirrors(const plc_image& image) {
-  const double* d = image.direction;
-  return d[0] * (d[4] * d[8] - d[5] * d[7]) - d[1] * (d[3] * d[8] - d[5] * d[6]) +
-             d[2] * (d[3] * d[7] - d[4] * d[6]) <
-         0;
-}
-
 // Between LPS and voxels. Normals are left out: where voxels are no cubes they would not be the
 // ones of the surface, and every program has its own.
 void transform(TriangleMesh& mesh, const plc_image& image, bool to_voxels) {
@@ -44,6 +37,13 @@ void transform(TriangleMesh& mesh, const plc_image& image, bool to_voxels) {
 }
 
 }  // namespace
+
+bool mirrors(const plc_image& image) {
+  const double* d = image.direction;
+  return d[0] * (d[4] * d[8] - d[5] * d[7]) - d[1] * (d[3] * d[8] - d[5] * d[6]) +
+             d[2] * (d[3] * d[7] - d[4] * d[6]) <
+         0;
+}
 
 const char* space_name(plc_space space) {
   switch (space) {

@@ -8,6 +8,9 @@
 
 namespace plc::tools {
 
+// Whether the axes of its voxels are those of a left hand in LPS.
+bool mirrors(const plc_image& image);
+
 // As files name it, and back; nothing for "".
 const char* space_name(plc_space space);
 std::optional<plc_space> space_named(const std::string& name);
