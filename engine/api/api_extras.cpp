@@ -153,6 +153,11 @@ Status check_obstacles(const plc_extras& e, const plc_parameters& p) {
 Status check_patch(const plc_extras& e, const plc_parameters& p) {
   if (e.mesh_held == nullptr) return {};
   if (p.init != PLC_INIT_MESH) return bad_argument("mesh_held: init must be PLC_INIT_MESH with it");
+  for (int64_t v = 0; v < e.mesh_vertex_count; ++v) {
+    if (e.mesh_held[v] <= 2) continue;
+    return bad_argument("mesh_held: is " + std::to_string(e.mesh_held[v]) + " of vertex " +
+                        std::to_string(v) + ", expected 0, 1 or 2");
+  }
   for (int a = 0; a < 3; ++a) {
     if (e.room_low[a] < e.room_high[a]) continue;
     return bad_argument("room: from " + number_text(e.room_low[a]) + " to " +

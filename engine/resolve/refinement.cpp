@@ -144,7 +144,9 @@ Vector<Corners> wrong_faces(const Mesh& mesh, const Executor& executor) {
   const auto point = [&](uint32_t v) { return Point3{mesh.at(v).x, mesh.at(v).y, mesh.at(v).z}; };
   run_blocks(executor, mesh.slots(), kBlock, [&](size_t block, size_t begin, size_t end) {
     for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
+      if (mesh.is_absent(v)) continue;
       visit_own_faces(mesh, v, [&](uint32_t, uint32_t a, uint32_t b) {
+        if (mesh.is_absent(a) || mesh.is_absent(b)) return;
         if (collinear(point(v), point(a), point(b))) flat[block].push_back({v, a, b});
       });
     }
@@ -195,6 +197,20 @@ void undo_where_meeting(Mesh& mesh, const Vector<uint8_t>& of_face, const Execut
     }
     if (!undone) return;
   }
+}
+
+// What has just been refined gets its last ids. Vertices below old_slots were there before.
+void finish(Mesh& mesh, uint32_t old_slots, const Executor& executor, bool renumbering) {
+  // Searches for faces that meet are fast where ids follow space.
+  const auto order = renumbering ? morton_order(mesh, executor) : living_order(mesh);
+  Vector<uint8_t> of_face(order.size());
+  for (size_t i = 0; i < order.size(); ++i) of_face[i] = order[i] >= old_slots ? 1 : 0;
+  mesh.renumber(order, executor);
+  undo_where_meeting(mesh, of_face, executor);
+  if (mesh.vertex_count() != mesh.slots()) {
+    mesh.renumber(renumbering ? morton_order(mesh, executor) : living_order(mesh), executor);
+  }
+  for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.wake(v);
 }
 
 }  // namespace
@@ -255,16 +271,34 @@ void refine(Mesh& mesh, const Executor& executor, bool renumbering) {
     }
   });
   mesh.delta /= kRefinement;
-  // Searches for faces that meet are fast where ids follow space.
-  const auto order = renumbering ? morton_order(mesh, executor) : living_order(mesh);
-  Vector<uint8_t> of_face(order.size());
-  for (size_t i = 0; i < order.size(); ++i) of_face[i] = order[i] >= old_slots ? 1 : 0;
-  mesh.renumber(order, executor);
-  undo_where_meeting(mesh, of_face, executor);
-  if (mesh.vertex_count() != mesh.slots()) {
-    mesh.renumber(renumbering ? morton_order(mesh, executor) : living_order(mesh), executor);
+  finish(mesh, old_slots, executor, renumbering);
+}
+
+void refine_marked(Mesh& mesh, const Vector<uint8_t>& marked, const Executor& executor) {
+  assert(mesh.in_order() && marked.size() == mesh.slots());
+  const uint32_t old_slots = mesh.slots();
+  const Vector<uint32_t> abc = mesh.faces();
+  Vector<std::array<uint32_t, 2>> edges;
+  for (size_t f = 0; f < abc.size(); f += 3) {
+    const uint32_t* v = &abc[f];
+    if (marked[v[0]] == 0 || marked[v[1]] == 0 || marked[v[2]] == 0) continue;
+    const uint32_t c =
+        mesh.create((mesh.at(v[0]) + mesh.at(v[1]) + mesh.at(v[2])) * (1.0F / 3.0F), {});
+    Neighbors ring;
+    for (size_t k = 0; k < 3; ++k) {
+      ring.push_back(v[k]);
+      const uint32_t next = v[(k + 1) % 3];
+      mesh.insert_after(v[k], next, c);
+      edges.push_back({std::min(v[k], next), std::max(v[k], next)});
+    }
+    mesh.set_ring(c, ring);
   }
-  for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.wake(v);
+  // Those with two such faces are there twice.
+  std::sort(edges.begin(), edges.end());
+  for (size_t i = 1; i < edges.size(); ++i) {
+    if (edges[i] == edges[i - 1]) invert_edge(mesh, edge_between(mesh, edges[i][0], edges[i][1]));
+  }
+  finish(mesh, old_slots, executor, true);
 }
 
 // The half-way marks between 0, 1, 2 ... refinements that lie below the ratio; a quotient of

@@ -1,5 +1,7 @@
 // Global refinement (3.4): edges shrink to 1 / sqrt 3, three times the vertices.
 #pragma once
+#include <cstdint>
+
 #include "engine/mesh/mesh.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
@@ -12,6 +14,10 @@ namespace plc {
 // vertex is due for a check.
 // renumbering: false leaves the ids as they come, without gaps; for comparisons.
 void refine(Mesh& mesh, const Executor& executor, bool renumbering = true);
+
+// The same of a part of the mesh, whose ids are in order: of the faces of three vertices that are
+// marked. Edges between those and others stay. delta is as it was.
+void refine_marked(Mesh& mesh, const Vector<uint8_t>& marked, const Executor& executor);
 
 // How many refinements bring delta from `from` nearest to `to`, in the ratio of both; 0 where `to`
 // is not smaller. from, to > 0.

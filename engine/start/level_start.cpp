@@ -303,12 +303,12 @@ Status check_obstacles(const Mesh& mesh, const LevelImage& level) {
 Status start_surface(const StartSpec& spec, const LevelImage& level, double delta,
                      const Schedule& schedule, Mesh& mesh, OperationCounts& counts) {
   mesh.clear();
+  mesh.delta = delta;
   Status made = make_start(spec, level, delta, schedule, mesh);
   if (!made.ok() || mesh.vertex_count() == 0) return made;
   if (mesh.obstacles != nullptr) {
     if (Status s = check_obstacles(mesh, level); !s.ok()) return s;
   }
-  mesh.delta = delta;
   // A patch is fitted to what it is a part of when its level starts.
   if (!needs_conforming(spec.init) || mesh.is_patch()) return {};
   Status s = conform(mesh, delta, schedule, counts);

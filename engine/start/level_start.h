@@ -36,7 +36,7 @@ struct StartSpec {
   Vector<double> xyz;       // kMesh: three voxel indices of the unpadded I_0 per vertex
   Vector<double> as_given;  // ... the same vertices as the user gave them, for messages
   Vector<uint32_t> abc;     // ... three vertices per face, counter-clockwise seen from outside
-  Vector<uint8_t> held;     // ... per vertex of a patch, not 0: it is held; empty: no patch
+  Vector<uint8_t> held;     // ... per vertex of a patch, see patch.h; empty: no patch
 };
 
 // What the start needs to know of its level.

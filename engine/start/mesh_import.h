@@ -21,8 +21,8 @@ namespace plc {
 // `as_given`: three values per vertex as the caller's user knows them; NULL: those of `given`.
 // kInvalidArgument for counts below 0 and NULL. The same for any executor.
 //
-// held: NULL, or a value per vertex, not 0 where it is to be held: it makes the mesh a patch
-// (mesh.h). It may be open then; what is nearer than an edge to a border is held. Every border is
+// held: NULL, or a value of patch.h per vertex: it makes the mesh a patch (mesh.h).
+// It may be open then; what is nearer than an edge to a border is held. Every border is
 // closed by absent vertices, whose faces are no part of the surface, and nobody asks whether it is
 // outward.
 Status import_mesh(const MeshArrays& given, const Executor& executor, Mesh& mesh,

@@ -5,6 +5,7 @@
 
 #include "engine/measure/mesh_topology.h"
 #include "engine/mesh/face_rings.h"
+#include "engine/resolve/refinement.h"
 
 namespace plc {
 
@@ -58,7 +59,7 @@ Status check_held(const MeshArrays& given, const uint8_t* held, const Vector<uin
     for (int k = 0; k < 3; ++k) {
       if (border[v[k]] == kNone) continue;
       for (int i = 0; i < 3; ++i) {
-        if (held[v[i]] != 0) continue;
+        if (held[v[i]] == kHeld) continue;
         return {ErrorCode::kInvalidData, "mesh: vertex " + std::to_string(v[i]) +
                                              " is not held, but next to the border at vertex " +
                                              std::to_string(v[k])};
@@ -96,10 +97,12 @@ Status fill_patch(const MeshArrays& given, const uint8_t* held, const float* rou
   const FaceRings rings(abc.data(), abc.size() / 3, vertices + absent, executor);
   Vector<float> xyz(rounded, rounded + 3 * vertices);
   Vector<uint32_t> ids;
+  Vector<uint8_t> coarse;
   for (size_t v = 0; v < vertices + absent; ++v) {
     if (rings.faces(v) == 0) continue;
     const auto id = static_cast<uint32_t>(v + 1);
-    ids.push_back(v >= vertices ? Mesh::kAbsent : held[v] != 0 ? id : 0);
+    ids.push_back(v >= vertices ? Mesh::kAbsent : held[v] == kHeld ? id : 0);
+    coarse.push_back(v < vertices && held[v] == kCoarse ? 1 : 0);
   }
   // Where a neighbour is: nobody looks, but coordinates have a range.
   for (size_t v = vertices; v < vertices + absent; ++v) {
@@ -109,6 +112,9 @@ Status fill_patch(const MeshArrays& given, const uint8_t* held, const float* rou
   if (ids.size() > kMaxMeshVertices) return too_many_vertices();
   fill_from_rings(mesh, xyz.data(), vertices + absent, rings);
   mesh.hold(ids);
+  if (std::find(coarse.begin(), coarse.end(), 1) != coarse.end()) {
+    refine_marked(mesh, coarse, executor);
+  }
   return {};
 }
 

@@ -18,6 +18,10 @@ namespace plc {
 inline constexpr size_t kMostClosing = 512;
 size_t close_borders(size_t vertex_count, Vector<uint32_t>& abc, const Executor& executor);
 
+// Of a vertex: it is held; it is free; it is free, and of the level above, so that the faces
+// between such are refined (3.4).
+inline constexpr uint8_t kFree = 0, kHeld = 1, kCoarse = 2;
+
 // As import_mesh(), of what that has found to be a manifold without self-intersections. rounded:
 // three floats per vertex.
 Status fill_patch(const MeshArrays& given, const uint8_t* held, const float* rounded,

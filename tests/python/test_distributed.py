@@ -149,9 +149,10 @@ def test_parameters_become_options_of_the_command():
         "otsu",
         {"curvature": np.float32(0.5), "levels": 2, "level_iso": (1, 2.5, 3), "inside_below": True,
          "window_low": 0, "window_high": 255, "pad_value": 1, "rest_length": "value",
-         "rest_length_value": 0.25, "late_bubbles": False, "epsilon": 1e-7},
+         "rest_length_value": 0.25, "late_bubbles": False, "epsilon": 1e-7,
+         "mesh": "adaptive", "edge_min": 0.5, "edge_max": 2},
     )  # fmt: skip
     assert options == [
-        "--iso=otsu", "--level-iso=1,2.5,3", "--levels=2", "--curvature=0.5", "--epsilon=1e-07",
-        "--inside=below", "--window=0,255", "--pad=1", "--rest-length=0.25", "--no-late-bubbles",
+        "--iso=otsu", "--level-iso=1,2.5,3", "--levels=2", "--mesh=adaptive", "--curvature=0.5",
+        "--epsilon=1e-07", "--inside=below", "--window=0,255", "--edge-range=0.5,2", "--pad=1", "--rest-length=0.25", "--no-late-bubbles",
     ]  # fmt: skip

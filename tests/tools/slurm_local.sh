@@ -46,7 +46,7 @@ JobRequeue=1
 SchedulerParameters=sched_interval=2,requeue_setup_env_fail
 JobAcctGatherType=jobacct_gather/none
 AccountingStorageType=accounting_storage/none
-NodeName=$host NodeAddr=127.0.0.1 CPUs=$(nproc) RealMemory=1000 State=UNKNOWN
+NodeName=$host NodeAddr=127.0.0.1 CPUs=$(nproc) RealMemory=${SLURM_LOCAL_MEMORY:-1000} State=UNKNOWN
 PartitionName=debug Nodes=$host Default=YES MaxTime=INFINITE State=UP
 C
   slurmctld -f "$dir/slurm.conf"

@@ -168,7 +168,7 @@ TEST_CASE("what a task holds is two edges wide, and no border touches itself", "
   const std::map<Int3, BlockCell> cells =
       divided(mesh, BlockGrid({64, 64, 64}, 32, 8), {{0, 0, 0}, {5, 5, 5}});
   const plc::tools::Patch patch =
-      patch_of(joined(cells, "test"), {-2, -2, -2}, {0.5, 2, 2}, "test");
+      patch_of(joined(cells, "test"), {-2, -2, -2}, {0.5, 2, 2}, 100, "test");
   CHECK(patch.aside.size() > 1);
   CHECK(patch.free > 50);
   const plc::tools::Stars stars = stars_of(patch.mesh);
@@ -176,6 +176,7 @@ TEST_CASE("what a task holds is two edges wide, and no border touches itself", "
     CHECK(stars.fans[v] == 1);
     if (stars.star[v] == Star::kBorder) CHECK(patch.held[v] == 1);
     if (patch.mesh.xyz[3 * v] > 0.5) CHECK(patch.held[v] == 1);
+    if (patch.held[v] != 1) CHECK(patch.held[v] == (patch.mesh.ids[v] < 100 ? 2 : 0));
   }
   for (size_t f = 0; f < patch.mesh.face_count(); ++f) {
     const uint32_t* v = &patch.mesh.abc[3 * f];
@@ -187,7 +188,7 @@ TEST_CASE("what a task holds is two edges wide, and no border touches itself", "
   BlockMesh broken = patch.mesh;
   broken.abc.insert(broken.abc.end(), {broken.abc[0], broken.abc[1], broken.abc[5]});
   CHECK_THAT(failure_of([&] {
-               patch_of(broken, {-2, -2, -2}, {2, 2, 2}, "here");
+               patch_of(broken, {-2, -2, -2}, {2, 2, 2}, 0, "here");
              }),
              Catch::Contains("here: its faces are of no closed surface"));
 }

@@ -162,7 +162,7 @@ Stars stars_of(const BlockMesh& mesh) {
 }
 
 Patch patch_of(BlockMesh mesh, const std::array<double, 3>& room_low,
-               const std::array<double, 3>& room_high, const std::string& what) {
+               const std::array<double, 3>& room_high, uint64_t coarse, const std::string& what) {
   Patch patch;
   patch.mesh = std::move(mesh);
   open_pinches(patch, what);
@@ -186,7 +186,9 @@ Patch patch_of(BlockMesh mesh, const std::array<double, 3>& room_low,
       const double x = m.xyz[3 * v + a];
       if (x < room_low[a] || x > room_high[a]) patch.held[v] = 1;
     }
-    patch.free += patch.held[v] == 0 ? 1 : 0;
+    if (patch.held[v] != 0) continue;
+    ++patch.free;
+    if (m.ids[v] < coarse) patch.held[v] = 2;
   }
   return patch;
 }

@@ -35,16 +35,17 @@ Stars stars_of(const BlockMesh& mesh);
 
 struct Patch {
   BlockMesh mesh;                              // as plc_extras takes it: no border touches itself
-  std::vector<uint8_t> held;                   // by vertex
+  std::vector<uint8_t> held;                   // by vertex, as plc_extras takes it
   std::vector<std::array<uint64_t, 3>> aside;  // faces that are left out of it, by ids
   std::map<uint64_t, std::array<double, 3>> aside_places;  // of their corners
   size_t free = 0;                                         // vertices that are not held
 };
 
 // Held is what lies outside of the room, and what is nearer to a border than kHeldRings edges.
+// coarse: ids below it are of the level above, whose faces are to be refined.
 inline constexpr int kHeldRings = 3;
 Patch patch_of(BlockMesh mesh, const std::array<double, 3>& room_low,
-               const std::array<double, 3>& room_high, const std::string& what);
+               const std::array<double, 3>& room_high, uint64_t coarse, const std::string& what);
 
 // The faces, each in the cell of the window nearest to its middle, in an order that only depends on
 // the faces themselves.

@@ -79,6 +79,11 @@ constexpr double kLongest = 1.68, kUniform = 1.25, kAdaptive = 5;
 
 }  // namespace
 
+bool too_many_blocks(const BlockGrid& grid) {
+  const Int3& n = grid.blocks();
+  return n[0] > kMostBlocks / n[1] || n[0] * n[1] > kMostBlocks / n[2];
+}
+
 // What has not been on its level before is of the level above.
 double BlockPlan::band_of(const plc_parameters& p, const plc_image& image, int from_level) {
   const bool adaptive = p.mesh == PLC_MESH_ADAPTIVE;
@@ -149,13 +154,15 @@ BlockPlan read_plan(const std::string& folder) {
     plan.parameters = parameters_of(json.at("parameters"));
     const auto side = json.at("side").get<int64_t>(), margin = json.at("margin").get<int64_t>();
     const int64_t* dims = plan.image.dims;
-    if (dims[0] < 2 || dims[1] < 2 || dims[2] < 2 || margin < 1 || side <= 2 * margin ||
-        plan.from_level < 0 || plan.from_level >= PLC_MAX_LEVELS ||
-        plan.parameters.level_iso_count != plan.parameters.levels + 1 ||
-        plan.parameters.levels <= plan.from_level) {
-      throw Failure{path + ": is no plan by blocks"};
-    }
+    const bool sound =
+        std::all_of(dims, dims + 3, [](int64_t d) { return d >= 2 && d < int64_t{1} << 31U; }) &&
+        margin >= 1 && margin < side && side < int64_t{1} << 31U && side >= 4 * margin &&
+        plan.from_level >= 0 && plan.from_level < kMostBlockLevels &&
+        plan.parameters.level_iso_count == plan.parameters.levels + 1 &&
+        plan.parameters.levels > plan.from_level && plan.parameters.levels < PLC_MAX_LEVELS;
+    if (!sound) throw Failure{path + ": is no plan by blocks"};
     plan.grid = BlockGrid({dims[0], dims[1], dims[2]}, side, margin);
+    if (too_many_blocks(plan.grid)) throw Failure{path + ": is no plan by blocks"};
   } catch (const Json::exception&) {
     throw Failure{path + ": is no plan by blocks"};
   }

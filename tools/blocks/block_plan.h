@@ -29,6 +29,11 @@ struct BlockPlan {
   static double band_of(const plc_parameters& parameters, const plc_image& image, int from_level);
 };
 
+// Ids of vertices have room for so many (block_task.cpp), and for the steps of so many levels.
+inline constexpr int64_t kMostBlocks = int64_t{1} << 24;
+inline constexpr int kMostBlockLevels = 30;
+bool too_many_blocks(const BlockGrid& grid);
+
 // Of blocks with this band; they have sides of at least four of them.
 int64_t margin_of(double band);
 

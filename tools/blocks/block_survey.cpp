@@ -42,15 +42,15 @@ std::vector<double> task_seconds_of(const std::vector<LevelSurvey>& levels, doub
   std::vector<double> seconds(levels.size(), 0);
   for (size_t level = 0; level < levels.size(); ++level) {
     for (size_t away = 0; away < levels.size() && seconds[level] == 0; ++away) {
-      const auto measured = [&](size_t other, double exponent) {
+      double ratio = 1;  // of vertices
+      for (size_t i = 0; i < away; ++i) ratio *= reduction * reduction;
+      const auto measured = [&](size_t other, double factor) {
         if (other >= levels.size() || levels[other].recorded == 0) return;
         seconds[level] = std::max(levels[other].seconds, 1e-3) /
-                         static_cast<double>(levels[other].recorded) *
-                         std::pow(reduction, exponent);
+                         static_cast<double>(levels[other].recorded) * factor;
       };
-      const double steps = 2 * static_cast<double>(away);
-      if (level >= away) measured(level - away, -steps);
-      measured(level + away, steps);  // what a coarser one tells is nearer to what is left
+      if (level >= away) measured(level - away, 1 / ratio);
+      measured(level + away, ratio);  // what a coarser one tells is nearer to what is left
     }
   }
   return seconds;

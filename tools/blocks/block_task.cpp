@@ -208,7 +208,11 @@ bool BlockTasks::run(int step, int64_t block, const std::function<bool()>& cance
     std::array<double, 3> low{}, high{};
     plan_.grid.bounds_of(window, low, high);
     for (size_t a = 0; a < 3; ++a) low[a] += plan_.band(), high[a] -= plan_.band();
-    const Patch patch = patch_of(joined(cells, what), low, high, what);
+    // With smaller reductions edges are divided one by one.
+    constexpr double kRefined = 1.32;  // the root of that of a refinement
+    const int first = step / BlockGrid::kColours * BlockGrid::kColours;  // of the level
+    const uint64_t coarse = plan_.parameters.reduction > kRefined ? new_id(first, 0, 0) : 0;
+    const Patch patch = patch_of(joined(cells, what), low, high, coarse, what);
     record.vertices = static_cast<int64_t>(patch.mesh.vertex_count());
     record.free = static_cast<int64_t>(patch.free);
     record.after = record.vertices;

@@ -60,7 +60,9 @@ plc_verdict on_level(const plc_level_report* level, const plc_surface* /*surface
 void check_plan(const BlockOptions& options) {
   const plc_parameters& p = options.extract.parameters;
   const auto refuse = [](const std::string& why) { throw Failure{"blocks: " + why}; };
-  if (options.from_level < 0) refuse("--from-level must be 0 or more");
+  if (options.from_level < 0 || options.from_level >= kMostBlockLevels) {
+    refuse("--from-level must be 0 to " + std::to_string(kMostBlockLevels - 1));
+  }
   if (p.levels >= 0 && p.levels <= options.from_level) {
     refuse("--from-level " + std::to_string(options.from_level) + ": must be below --levels " +
            std::to_string(p.levels) + ", as the levels above it are done whole");
@@ -73,7 +75,14 @@ void check_plan(const BlockOptions& options) {
 int64_t checked_margin(const BlockOptions& options, const plc_image& image) {
   const int64_t margin =
       margin_of(BlockPlan::band_of(options.extract.parameters, image, options.from_level));
-  if (options.side >= 4 * margin) return margin;
+  if (options.side >= int64_t{1} << 31U) {
+    throw Failure{"blocks: --side " + std::to_string(options.side) + ": must be below 2^31"};
+  }
+  if (options.side >= 4 * margin) {
+    const BlockGrid grid({image.dims[0], image.dims[1], image.dims[2]}, options.side, margin);
+    if (!too_many_blocks(grid)) return margin;
+    throw Failure{"blocks: more than 2^24 of them, use larger ones"};
+  }
   throw Failure{
       "blocks: --side " + std::to_string(options.side) + ": must be " + std::to_string(4 * margin) +
       " or more for edges as long as these and --from-level " + std::to_string(options.from_level)};

@@ -27,11 +27,12 @@ ProgressFunction = Callable[[int, int, float | None], object]
 
 # Parameters by the names of the command's options, where these are the same but for "_".
 _PLAIN = (
-    "level_iso levels reduction anisotropy edge curvature spring attraction mass damping time_step "
-    "max_move bound epsilon calm_speed max_iterations"
+    "level_iso levels reduction anisotropy mesh edge tolerance curvature spring attraction mass damping "
+    "time_step max_move bound epsilon calm_speed max_iterations"
 ).split()
 _OTHERS = (
-    "inside_below window_low window_high pad_value rest_length rest_length_value late_bubbles sleeping"
+    "inside_below window_low window_high pad_value edge_min edge_max rest_length rest_length_value "
+    "late_bubbles sleeping"
 ).split()
 _NOT_BY_BLOCKS = tuple(
     name for name in Parameters.__annotations__ if name not in (*_PLAIN, *_OTHERS, "iso")
@@ -95,8 +96,7 @@ def extract(
     retries : int
         How often a task is tried again that has failed.
     **changes
-        Fields of `Parameters` by name, but for those of starts, features, gradients and adaptive
-        meshes.
+        Fields of `Parameters` by name, but for those of starts, features and gradients.
 
     Returns
     -------
@@ -161,6 +161,11 @@ def _options(iso: float | str | None, changes: dict[str, Any]) -> list[str]:
         if None in window:
             raise ValueError("window_low, window_high: must both be given for an image by blocks")
         words.append(f"--window={_text(window)}")
+    edges = [changes.get("edge_min"), changes.get("edge_max")]
+    if edges != [None, None]:
+        if None in edges:
+            raise ValueError("edge_min, edge_max: must both be given for an image by blocks")
+        words.append(f"--edge-range={_text(edges)}")
     if changes.get("pad_value") is not None:
         words.append(f"--pad={_text(changes['pad_value'])}")
     if "rest_length" in changes:
