@@ -40,7 +40,7 @@ def main() -> None:
                 127.5,
                 side=int(side),
                 command=command,
-                memory="1G",
+                memory="3G",
                 collect=False,
             )
 
