@@ -7,13 +7,14 @@
 
 namespace plc {
 
-// Voxels low .. high, both within.
+// Voxels low .. high, both within. inside: whether it is, where it has no part of the surface.
 struct VoxelRoom {
   std::array<int32_t, 3> low, high;
+  bool inside = false;
 };
 
 inline VoxelRoom whole_room(const ImageView& image) {
-  return {{0, 0, 0}, {image.dims[0] - 1, image.dims[1] - 1, image.dims[2] - 1}};
+  return {{0, 0, 0}, {image.dims[0] - 1, image.dims[1] - 1, image.dims[2] - 1}, false};
 }
 
 }  // namespace plc

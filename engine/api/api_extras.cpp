@@ -115,7 +115,9 @@ Status check_mask(const plc_image* given, const VolumeView& image, plc_image& ma
 
 Status check_start(const plc_extras& e, const plc_parameters& p) {
   if (p.init == PLC_INIT_SEEDS && e.seed_count == 0) return bad_argument("seeds: none given");
-  if (p.init == PLC_INIT_MESH && e.mesh_face_count == 0) return bad_argument("mesh: none given");
+  if (p.init == PLC_INIT_MESH && e.mesh_face_count == 0 && e.mesh_held == nullptr) {
+    return bad_argument("mesh: none given");
+  }
   return {};
 }
 
@@ -269,7 +271,9 @@ void take_extras(const plc_extras& e, const Frame& frame, RecoverySpec& spec) {
   spec.start.as_given.assign(e.mesh_xyz, e.mesh_xyz + 3 * e.mesh_vertex_count);
   spec.start.abc = std::move(mesh.abc);
   if (e.mesh_held != nullptr) {
+    spec.start.patch = true;
     spec.start.held.assign(e.mesh_held, e.mesh_held + e.mesh_vertex_count);
+    spec.room_inside = e.room_inside != 0;
     std::copy_n(e.room_low, 3, spec.room_low.begin());
     std::copy_n(e.room_high, 3, spec.room_high.begin());
   }

@@ -91,7 +91,7 @@ Status Run::prepare(std::shared_ptr<const PyramidData> pyramid, Pyramid images, 
   extras_.obstacle_xyz = nullptr;
   extras_.obstacle_abc = nullptr;
   // Of a patch the whole image would tell too much.
-  patch_ = !spec.start.held.empty();
+  patch_ = spec.start.patch;
   if (!patch_) {
     if (Status s = check_cost(images, spec); !s.ok()) return s;
   }

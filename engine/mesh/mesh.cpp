@@ -291,6 +291,7 @@ void Mesh::renumber(const Vector<uint32_t>& order, const Executor& executor) {
   to.most_neighbors = most_neighbors;
   to.slots_ = to.alive_ = static_cast<uint32_t>(order.size());
   to.held_ = held_;
+  to.patch_ = patch_;
   carry_rings(order, to, executor);
   std::vector<std::function<void()>> streams;
   visit_streams(to, *this, [&](auto& target, auto& source) {
@@ -369,6 +370,7 @@ Vector<uint32_t> Mesh::faces() const {
 
 void Mesh::hold(const Vector<uint32_t>& to) {
   assert(to.size() == slots_);
+  patch_ = true;
   held.resize(valence_.size());
   std::copy(to.begin(), to.end(), held.begin());
   held_ = slots_ - static_cast<uint32_t>(std::count(to.begin(), to.end(), 0U));

@@ -99,7 +99,7 @@ class Mesh {
   float size_between(uint32_t u, uint32_t v) const {
     return static_cast<float>(delta) * (1 + 0.5F * (position[u].w + position[v].w));
   }
-  bool is_patch() const { return !held.empty(); }
+  bool is_patch() const { return patch_; }
   bool is_held(uint32_t v) const { return is_patch() && held[v] != 0; }
   bool is_absent(uint32_t v) const { return is_patch() && held[v] == kAbsent; }
   // Vertices that move.
@@ -240,6 +240,7 @@ class Mesh {
   uint32_t slots_ = 0;
   uint32_t alive_ = 0;
   uint32_t held_ = 0;  // of them
+  bool patch_ = false;
   uint32_t created_ = 0;
   Buffer<uint32_t> columns_;
   Buffer<uint16_t> valence_;

@@ -109,7 +109,7 @@ Status Recovery::start_level() {
     }
     evolution_.notify("start");
   }
-  if (mesh_.vertex_count() == 0) return leave_level();
+  if (mesh_.vertex_count() == 0 && !mesh_.is_patch()) return leave_level();
   estimate_.start_level();
   if (Status s = adapt(); !s.ok()) return s;
   if (Status s = build_gradient_image(); !s.ok()) return s;
@@ -173,6 +173,7 @@ VoxelRoom Recovery::voxel_room() const {
   const ImageView& image = guide_.image;
   VoxelRoom room = whole_room(image);
   if (!mesh_.is_patch()) return room;
+  room.inside = spec_.room_inside;
   const float low[3] = {guide_.room.low.x, guide_.room.low.y, guide_.room.low.z};
   const float high[3] = {guide_.room.high.x, guide_.room.high.y, guide_.room.high.z};
   for (size_t a = 0; a < 3; ++a) {
@@ -425,12 +426,12 @@ Status Recovery::ask_verdict() {
 Status Recovery::leave_level() {
   if (hooks_.left) hooks_.left(record());
   pyramid_.levels[static_cast<size_t>(level_)].release();
-  if (level_ == 0 && mesh_.vertex_count() == 0) {
+  done_ = done_ || level_ == 0 || mesh_.is_patch();
+  if (level_ == 0 && mesh_.vertex_count() == 0 && !mesh_.is_patch()) {
     return {ErrorCode::kInvalidData,
             "no surface: nothing in the image holds one at this iso-value; check the iso-value, or "
             "use weaker internal forces"};
   }
-  done_ = done_ || level_ == 0;
   if (done_) {
     mesh_.sizing = nullptr;
     mesh_.obstacles = nullptr;

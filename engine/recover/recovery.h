@@ -49,8 +49,9 @@ struct RecoverySpec {
   Vector<uint32_t> obstacle_abc;
   double obstacle_gap = 0;  // delta
   // Of a patch (StartSpec::held): the box in which its vertices may move, voxel indices of the
-  // unpadded I_0; no late bubbles are started.
+  // unpadded I_0; whether it lies inside where it has no face. A patch is of one level.
   std::array<double, 3> room_low{}, room_high{};
+  bool room_inside = false;
   LevelForce force;  // may be empty
   bool late_bubbles = true;
   bool sleeping = true;       // sleep.h; never with a user's force, which may change at any time

@@ -216,7 +216,7 @@ Status make_mesh(const StartSpec& spec, const LevelImage& level, const Executor&
   for (size_t i = 0; i < xyz.size(); ++i) xyz[i] = spec.xyz[i] * level.space.step[i % 3];
   return import_mesh(arrays_of(xyz, spec.abc), executor, mesh,
                      spec.as_given.empty() ? nullptr : spec.as_given.data(),
-                     spec.held.empty() ? nullptr : spec.held.data());
+                     spec.patch ? spec.held.data() : nullptr);
 }
 
 // Every so many voxels of an image that is finer than delta on some axis (level_delta): a surface
@@ -304,6 +304,10 @@ Status start_surface(const StartSpec& spec, const LevelImage& level, double delt
                      const Schedule& schedule, Mesh& mesh, OperationCounts& counts) {
   mesh.clear();
   mesh.delta = delta;
+  if (spec.patch && spec.abc.empty()) {
+    mesh.hold({});
+    return {};
+  }
   Status made = make_start(spec, level, delta, schedule, mesh);
   if (!made.ok() || mesh.vertex_count() == 0) return made;
   if (mesh.obstacles != nullptr) {

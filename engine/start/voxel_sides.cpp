@@ -130,7 +130,12 @@ VoxelSides::VoxelSides(const Mesh& mesh, const ImageView& image, const VoxelRoom
   rows.visit_faces([&](const std::array<Point, 3>& p) {
     rows.cross(p, [this](const Voxel& first) { flips_.flip(first); });
   });
-  if (mesh.is_patch()) begin_rows(mesh, image);
+  if (!mesh.is_patch()) return;
+  if (mesh.vertex_count() > 0) {
+    begin_rows(mesh, image);
+  } else {
+    first_.assign(index_of(room_.high[1], room_.high[2]) + 1, room_.inside ? 1 : 0);
+  }
 }
 
 void VoxelSides::begin_rows(const Mesh& mesh, const ImageView& image) {

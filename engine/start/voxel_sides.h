@@ -23,7 +23,7 @@ class VoxelSides {
   VoxelSides(const Mesh& mesh, const ImageView& image)
       : VoxelSides(mesh, image, whole_room(image)) {}
 
-  // False where no face of a patch tells.
+  // False where a patch has faces, and none tells.
   bool known() const { return known_; }
   // inside[x - low] = 1 where the centre of voxel (x, y, z) lies inside the surface, else 0; of the
   // room's x. False, and all are 0, where no voxel of the row does. From any thread.

@@ -314,6 +314,38 @@ TEST_CASE("late bubbles of a patch start in its room alone", "[pellicle_patch]")
   CHECK(components(evolved(context.get(), scene, open)) == 1);
 }
 
+TEST_CASE("a room without a face gets what is in it, on either side", "[pellicle_patch]") {
+  Scene scene;
+  scene.parameters.late_bubbles = 1;
+  const Context context = samples::make_context();
+  Part nothing;
+  nothing.held.assign(1, 0);
+  const auto volume = [&](std::array<double, 3> low, std::array<double, 3> high, int inside) {
+    nothing.low = low;
+    nothing.high = high;
+    plc_parameters p = scene.parameters;
+    p.init = PLC_INIT_MESH;
+    plc_extras extras = nothing.extras();
+    extras.mesh_vertex_count = 0;
+    extras.room_inside = inside;
+    const Surface surface = samples::extract(context.get(), scene.image, p, &extras);
+    if (plc_surface_face_count(surface.get()) == 0) return 0.0;
+    const plc_check check =
+        checked(context.get(), samples::positions_f64(surface.get(), PLC_SPACE_VOXEL),
+                samples::faces(surface.get(), PLC_SPACE_VOXEL));
+    CHECK(check.self_intersections == 0);
+    CHECK(check.closed == 1);
+    return check.measures.volume;
+  };
+  // The small ball, outside; a corner without anything.
+  const double small = volume({36.5, 14, 15}, {47, 29, 30}, 0);
+  CHECK(small == Approx(4.0 / 3 * 3.14159 * 3.4 * 3.4 * 3.4).epsilon(0.1));
+  CHECK(volume({0, 0, 0}, {6, 6, 6}, 0) == 0);
+  // Within the large ball nothing is missed; where all was taken for inside the corner is a cavity.
+  CHECK(volume({16, 16, 16}, {26, 26, 26}, 1) == 0);
+  CHECK(volume({0, 0, 0}, {8, 8, 8}, 1) < -200);
+}
+
 TEST_CASE("a patch is the same bits for any threads and SIMD target", "[pellicle_patch]") {
   Scene scene;
   Part part = coarse(scene);

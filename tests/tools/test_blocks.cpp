@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -14,6 +15,7 @@
 #include "tools/blocks/block_file.h"
 #include "tools/blocks/block_grid.h"
 #include "tools/blocks/block_patch.h"
+#include "tools/blocks/block_sides.h"
 
 namespace {
 
@@ -115,6 +117,33 @@ TEST_CASE("a surface is divided into cells and put together again", "[blocks]") 
   // A vertex at two places.
   read.begin()->second.xyz[0] += 1;
   CHECK_THAT(failure_of([&] { joined(read, "test"); }), Catch::Contains("different places"));
+}
+
+TEST_CASE("blocks know on which side of the coarse surface they lie", "[blocks]") {
+  const BlockGrid grid({100, 100, 100}, 10, 2);
+  samples::Soup soup = samples::sphere(3);
+  for (double& x : soup.xyz) x = 50 + 42 * x;
+  samples::Soup cavity = samples::sphere(3);
+  for (double& x : cavity.xyz) x = 50 + 17 * x;
+  for (size_t f = 0; f < cavity.abc.size(); f += 3) std::swap(cavity.abc[f], cavity.abc[f + 1]);
+  soup.append(cavity);
+  const std::vector<uint32_t> abc(soup.abc.begin(), soup.abc.end());
+  const std::vector<int64_t> inside = plc::tools::blocks_inside(grid, soup.xyz, abc);
+  size_t sure = 0;
+  for (int64_t block = 0; block < grid.block_count(); ++block) {
+    const Int3 at = grid.block_at(block);
+    double r = 0;
+    for (size_t a = 0; a < 3; ++a) {
+      const double x = 10 * static_cast<double>(at[a]) + 5 - 50;
+      r += x * x;
+    }
+    r = std::sqrt(r);
+    if (std::abs(r - 42) < 2 || std::abs(r - 17) < 2) continue;
+    ++sure;
+    const bool expected = r < 42 && r > 17;
+    REQUIRE(std::binary_search(inside.begin(), inside.end(), block) == expected);
+  }
+  CHECK(sure > 700);
 }
 
 TEST_CASE("block files that are damaged are refused in a line", "[blocks]") {

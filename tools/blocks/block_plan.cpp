@@ -121,6 +121,7 @@ void write_plan(const std::string& folder, const BlockPlan& plan) {
                {"margin", plan.grid.margin()},
                {"from_level", plan.from_level},
                {"start", {{"vertices", plan.start_vertices}, {"faces", plan.start_faces}}},
+               {"inside", plan.inside},
                {"parameters", parameters_json(plan.parameters)}};
   AtomicFile file(folder + "/plan.json");
   file.write(json.dump(1) + "\n");
@@ -151,6 +152,7 @@ BlockPlan read_plan(const std::string& folder) {
     plan.from_level = json.at("from_level").get<int>();
     plan.start_vertices = json.at("start").at("vertices").get<int64_t>();
     plan.start_faces = json.at("start").at("faces").get<int64_t>();
+    plan.inside = json.at("inside").get<std::vector<int64_t>>();
     plan.parameters = parameters_of(json.at("parameters"));
     const auto side = json.at("side").get<int64_t>(), margin = json.at("margin").get<int64_t>();
     const int64_t* dims = plan.image.dims;

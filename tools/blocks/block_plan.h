@@ -20,6 +20,8 @@ struct BlockPlan {
   BlockGrid grid;
   int from_level = 0;  // the coarsest level that is done by blocks
   int64_t start_vertices = 0, start_faces = 0;
+  // Blocks whose middle lies inside the coarse levels' surface, ascending.
+  std::vector<int64_t> inside;
 
   int steps() const { return BlockGrid::kColours * (from_level + 1); }
   int level_of(int step) const { return from_level - step / BlockGrid::kColours; }

@@ -36,7 +36,7 @@ plc_verdict on_level(const plc_level_report* level, const plc_surface* /*surface
   auto& record = *static_cast<TaskRecord*>(user);
   record.iterations = level->iterations;
   record.converged = level->converged != 0;
-  return PLC_VERDICT_STOP;
+  return PLC_VERDICT_ACCEPT;
 }
 
 void sort_by_id(BlockMesh& mesh) {
@@ -127,9 +127,9 @@ const plc_pyramid* BlockTasks::pyramid_of(int level) {
   return made;
 }
 
-BlockTasks::Surface BlockTasks::evolve(const Patch& patch, int level,
-                                       const BlockGrid::Window& window,
+BlockTasks::Surface BlockTasks::evolve(const Patch& patch, int step, int64_t block,
                                        const std::function<bool()>& cancelled, TaskRecord& record) {
+  static constexpr uint8_t kNothing = 0;  // held of a patch without a vertex
   plc_extras extras;
   plc_extras_defaults(&extras);
   extras.space = PLC_SPACE_VOXEL;
@@ -137,17 +137,14 @@ BlockTasks::Surface BlockTasks::evolve(const Patch& patch, int level,
   extras.mesh_vertex_count = static_cast<int64_t>(patch.mesh.vertex_count());
   extras.mesh_abc = patch.mesh.abc.data();
   extras.mesh_face_count = static_cast<int64_t>(patch.mesh.face_count());
-  extras.mesh_held = patch.held.data();
-  std::array<double, 3> low{}, high{};
-  plan_.grid.bounds_of(window, low, high);
-  for (size_t a = 0; a < 3; ++a) {
-    extras.room_low[a] = low[a] + plan_.band();
-    extras.room_high[a] = high[a] - plan_.band();
-  }
+  extras.mesh_held = patch.held.empty() ? &kNothing : patch.held.data();
+  room_of(plan_.grid.window_of(plan_.grid.block_at(block)), extras.room_low, extras.room_high);
+  extras.room_inside = std::binary_search(plan_.inside.begin(), plan_.inside.end(), block) ? 1 : 0;
   extras.progress = on_progress;
   extras.progress_user = const_cast<std::function<bool()>*>(&cancelled);  // only read
   extras.level = on_level;
   extras.level_user = &record;
+  const int level = plan_.level_of(step);
   const plc_parameters p = task_parameters(plan_, level);
   plc_run* made = nullptr;
   demand(plc_run_create(context_, pyramid_of(level), &p, &extras, &made));
@@ -195,6 +192,27 @@ BlockMesh BlockTasks::after(const Patch& patch, const plc_surface* surface, int 
   return mesh;
 }
 
+Patch BlockTasks::patch_in(const std::map<Int3, BlockCell>& cells, const BlockGrid::Window& window,
+                           int step, const std::string& what) const {
+  // With smaller reductions edges are divided one by one.
+  constexpr double kRefined = 1.32;  // the root of that of a refinement
+  const int first = step / BlockGrid::kColours * BlockGrid::kColours;  // of the level
+  const uint64_t coarse = plan_.parameters.reduction > kRefined ? new_id(first, 0, 0) : 0;
+  std::array<double, 3> low{}, high{};
+  room_of(window, low.data(), high.data());
+  return patch_of(joined(cells, what), low, high, coarse, what);
+}
+
+// Where vertices of a window may be.
+void BlockTasks::room_of(const BlockGrid::Window& window, double* low, double* high) const {
+  std::array<double, 3> from{}, to{};
+  plan_.grid.bounds_of(window, from, to);
+  for (size_t a = 0; a < 3; ++a) {
+    low[a] = from[a] + plan_.band();
+    high[a] = to[a] - plan_.band();
+  }
+}
+
 bool BlockTasks::run(int step, int64_t block, const std::function<bool()>& cancelled,
                      TaskRecord& record) {
   const auto start = std::chrono::steady_clock::now();
@@ -203,28 +221,23 @@ bool BlockTasks::run(int step, int64_t block, const std::function<bool()>& cance
   const Int3 at = plan_.grid.block_at(block);
   const std::string what = name_of(plan_, step, at);
   const BlockGrid::Window window = plan_.grid.window_of(at);
-  std::map<Int3, BlockCell> cells = cells_before(folder_, plan_, step, plan_.grid.cells_of(window));
-  if (!cells.empty()) {
-    std::array<double, 3> low{}, high{};
-    plan_.grid.bounds_of(window, low, high);
-    for (size_t a = 0; a < 3; ++a) low[a] += plan_.band(), high[a] -= plan_.band();
-    // With smaller reductions edges are divided one by one.
-    constexpr double kRefined = 1.32;  // the root of that of a refinement
-    const int first = step / BlockGrid::kColours * BlockGrid::kColours;  // of the level
-    const uint64_t coarse = plan_.parameters.reduction > kRefined ? new_id(first, 0, 0) : 0;
-    const Patch patch = patch_of(joined(cells, what), low, high, coarse, what);
-    record.vertices = static_cast<int64_t>(patch.mesh.vertex_count());
-    record.free = static_cast<int64_t>(patch.free);
-    record.after = record.vertices;
-    if (patch.free > 0) {
-      const Surface surface = evolve(patch, plan_.level_of(step), window, cancelled, record);
-      if (surface == nullptr) return false;
-      BlockMesh mesh = after(patch, surface.get(), step, block);
-      record.after = static_cast<int64_t>(mesh.vertex_count());
-      put_back(patch, mesh);
-      sort_by_id(mesh);
-      cells = divided(mesh, plan_.grid, window);
-    }
+  const std::vector<Int3> all = plan_.grid.cells_of(window);
+  std::map<Int3, BlockCell> cells = cells_before(folder_, plan_, step, all);
+  const Patch patch = cells.empty() ? Patch() : patch_in(cells, window, step, what);
+  record.vertices = static_cast<int64_t>(patch.mesh.vertex_count());
+  record.free = static_cast<int64_t>(patch.free);
+  record.after = record.vertices;
+  // Where a surface has been and is gone, it is not known which side is left.
+  const bool searched = plan_.parameters.late_bubbles != 0 &&
+                        (!cells.empty() || cells_before(folder_, plan_, 0, all).empty());
+  if (patch.free > 0 || searched) {
+    const Surface surface = evolve(patch, step, block, cancelled, record);
+    if (surface == nullptr) return false;
+    BlockMesh mesh = after(patch, surface.get(), step, block);
+    record.after = static_cast<int64_t>(mesh.vertex_count());
+    put_back(patch, mesh);
+    sort_by_id(mesh);
+    cells = divided(mesh, plan_.grid, window);
   }
   demand(plc_context_memory(context_, nullptr, &record.peak_bytes));
   record.bricks_read = bricks_read() - read_before;

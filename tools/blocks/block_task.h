@@ -41,7 +41,10 @@ class BlockTasks {
   void demand(plc_status status) const;
   int64_t bricks_read() const;
   const plc_pyramid* pyramid_of(int level);
-  Surface evolve(const Patch& patch, int level, const BlockGrid::Window& window,
+  Patch patch_in(const std::map<Int3, BlockCell>& cells, const BlockGrid::Window& window, int step,
+                 const std::string& what) const;
+  void room_of(const BlockGrid::Window& window, double* low, double* high) const;
+  Surface evolve(const Patch& patch, int step, int64_t block,
                  const std::function<bool()>& cancelled, TaskRecord& record);
   BlockMesh after(const Patch& patch, const plc_surface* surface, int step, int64_t block) const;
 

@@ -11,6 +11,7 @@
 
 #include "tools/blocks/block_check.h"
 #include "tools/blocks/block_plan.h"
+#include "tools/blocks/block_sides.h"
 #include "tools/blocks/block_task.h"
 #include "tools/cohort/cohort_progress.h"
 #include "tools/command/block_jobs.h"
@@ -143,6 +144,7 @@ int run_plan(BlockOptions& options, InterruptGuard& interrupt) {
   const TriangleMesh mesh = mesh_of(context.get(), surface.get(), PLC_SPACE_VOXEL);
   plan.start_vertices = static_cast<int64_t>(mesh.xyz.size() / 3);
   plan.start_faces = static_cast<int64_t>(mesh.abc.size() / 3);
+  plan.inside = blocks_inside(plan.grid, mesh.xyz, mesh.abc);
   interrupt.only_note();
   make_folder(options.folder + "/start");
   if (fs::exists(options.folder + "/plan.json")) {
