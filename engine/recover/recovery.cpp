@@ -221,7 +221,7 @@ Status Recovery::build_gradient_image() {
 Status Recovery::adapt() {
   const double start = now();
   const double target = delta_of(level_);
-  // Of a patch those edges are too long that have not been on this level before.
+  // What of a patch is of the level above was refined when the patch was made (patch.h).
   const int steps = mesh_.is_patch() ? 0 : refinements_between(mesh_.delta, target);
   for (int i = 0; i < steps; ++i) {
     if (uint64_t{mesh_.vertex_count()} * 3 > mesh_.most_vertices) return too_many_vertices();

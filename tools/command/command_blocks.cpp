@@ -127,7 +127,7 @@ int run_plan(BlockOptions& options, InterruptGuard& interrupt) {
   extras.level_user = &watch;
   interrupt.note_first();
   plc_surface* made = nullptr;
-  const plc_status status = volume.extract(context.get(), job.parameters, extras, &made);
+  const plc_status status = volume.extract(context.get(), job.parameters, extras, line, &made);
   if (status == PLC_CANCELLED) return interrupt.tell();
   demand(context.get(), status);
   const SurfaceHandle surface(made);
@@ -188,7 +188,8 @@ class BlockVolume {
   // The context must outlive this.
   const plc_volume* open(plc_context* context, const BlockPlan& plan) {
     if (source_ != nullptr) {
-      volume_ = volume_of(context, *source_, plan.low, plan.high);
+      fetch_.source = source_.get();
+      volume_ = volume_of(context, fetch_, plan.low, plan.high);
     } else {
       plc_volume* made = nullptr;
       demand(context, plc_volume_create(context, &loaded_.image, PLC_BORROW, &made));
@@ -208,6 +209,7 @@ class BlockVolume {
  private:
   std::unique_ptr<BrickSource> source_;
   LoadedVolume loaded_;
+  BrickFetch fetch_;
   VolumeHandle volume_;
 };
 

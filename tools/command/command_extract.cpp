@@ -83,7 +83,7 @@ SurfaceHandle evolve(plc_context* context, ExtractVolume& volume, const ExtractJ
     extras.level_user = &files;
   }
   plc_surface* surface = nullptr;
-  const plc_status status = volume.extract(context, job.parameters, extras, &surface);
+  const plc_status status = volume.extract(context, job.parameters, extras, line, &surface);
   if (status == PLC_CANCELLED) return nullptr;
   if (status != PLC_OK) throw failure_of(context);
   SurfaceHandle result(surface);

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <mutex>
+#include <string>
 #include <utility>
 
+#include "tools/command/clock.h"
 #include "tools/file/failure.h"
 #include "tools/file/memory.h"
 
@@ -14,7 +17,9 @@ namespace {
 
 int fetch(const int64_t at[3], void* voxels, char* message, size_t size, void* user) {
   try {
-    read_brick(*static_cast<const BrickSource*>(user), at, static_cast<std::byte*>(voxels));
+    const auto& bricks = *static_cast<const BrickFetch*>(user);
+    read_brick(*bricks.source, at, static_cast<std::byte*>(voxels));
+    if (bricks.fetched) bricks.fetched();
     return 0;
   } catch (const Failure& failure) {
     std::snprintf(message, size, "%s", failure.message.c_str());
@@ -24,7 +29,8 @@ int fetch(const int64_t at[3], void* voxels, char* message, size_t size, void* u
   return 1;
 }
 
-plc_bricks bricks_of(const BrickSource& source) {
+plc_bricks bricks_of(const BrickFetch& fetcher) {
+  const BrickSource& source = *fetcher.source;
   plc_bricks bricks;
   plc_bricks_defaults(&bricks);
   const plc_image& image = source.image();
@@ -35,7 +41,7 @@ plc_bricks bricks_of(const BrickSource& source) {
   std::copy_n(image.origin, 3, bricks.origin);
   std::copy_n(image.direction, 9, bricks.direction);
   bricks.fetch = fetch;
-  bricks.user = const_cast<BrickSource*>(&source);  // only read
+  bricks.user = const_cast<BrickFetch*>(&fetcher);  // only read
   return bricks;
 }
 
@@ -55,17 +61,57 @@ ExtractVolume::ExtractVolume(const ExtractOptions& options) {
   if (options.box) source_ = cut_out(options.input, std::move(source_), *options.box);
 }
 
+namespace {
+
+int64_t brick_count(const BrickSource& source) {
+  int64_t count = 1;
+  for (size_t a = 0; a < 3; ++a) {
+    count *= (source.image().dims[a] + source.brick()[a] - 1) / source.brick()[a];
+  }
+  return count;
+}
+
+// Tells how many bricks have been read until all have been, once: before that no surface evolves.
+class Reading {
+ public:
+  Reading(int64_t bricks, ProgressLine& line) : bricks_(bricks), line_(line) {}
+  void add() {
+    const std::lock_guard lock(mutex_);
+    if (++read_ > bricks_) return;
+    line_.update_part(
+        "reading, " + std::to_string(read_) + " of " + std::to_string(bricks_) + " bricks",
+        static_cast<double>(read_) / static_cast<double>(bricks_), now() - start_);
+  }
+
+ private:
+  std::mutex mutex_;
+  double start_ = now();
+  int64_t bricks_, read_ = 0;
+  ProgressLine& line_;
+};
+
+}  // namespace
+
 plc_status ExtractVolume::extract(plc_context* context, const plc_parameters& parameters,
-                                  const plc_extras& extras, plc_surface** surface) {
+                                  const plc_extras& extras, ProgressLine& line,
+                                  plc_surface** surface) {
   if (source_ == nullptr) {
     return plc_extract(context, &loaded_.image, &parameters, &extras, surface);
   }
-  if (volume_ == nullptr) volume_ = volume_of(context, *source_, NAN, NAN);
-  return plc_extract_volume(context, volume_.get(), &parameters, &extras, surface);
+  if (volume_ != nullptr) {
+    return plc_extract_volume(context, volume_.get(), &parameters, &extras, surface);
+  }
+  Reading reading(brick_count(*source_), line);
+  fetch_ = {source_.get(), [&reading] { reading.add(); }};
+  volume_ = volume_of(context, fetch_, NAN, NAN);
+  const plc_status status =
+      plc_extract_volume(context, volume_.get(), &parameters, &extras, surface);
+  fetch_.fetched = nullptr;
+  return status;
 }
 
-VolumeHandle volume_of(plc_context* context, const BrickSource& source, double low, double high) {
-  plc_bricks bricks = bricks_of(source);
+VolumeHandle volume_of(plc_context* context, const BrickFetch& fetch, double low, double high) {
+  plc_bricks bricks = bricks_of(fetch);
   bricks.low = low;
   bricks.high = high;
   plc_volume* made = nullptr;

@@ -1,15 +1,27 @@
 // The image that `extract` works on: in memory, or by bricks.
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 
 #include "tools/command/engine_handles.h"
 #include "tools/command/extract_options.h"
+#include "tools/command/progress_line.h"
 #include "tools/volume/brick_source.h"
 #include "tools/volume/volume_io.h"
 #include "tools/volume/voxels.h"
 
 namespace plc::tools {
+
+// What the engine fetches bricks by.
+struct BrickFetch {
+  const BrickSource* source = nullptr;
+  std::function<void()> fetched{};  // after each brick, on any thread; may be empty
+};
+
+// The engine's volume by bricks; the context, the fetch and its source must outlive it. low, high:
+// the range of the voxels where it is known, else NAN. Throws Failure.
+VolumeHandle volume_of(plc_context* context, const BrickFetch& fetch, double low, double high);
 
 class ExtractVolume {
  public:
@@ -26,9 +38,10 @@ class ExtractVolume {
   // Bytes of voxels in memory.
   size_t held() const { return loaded_.bytes.size(); }
 
-  // plc_extract. The context must outlive this.
+  // plc_extract. The context must outlive this. line: told how much has been read, where that comes
+  // by bricks.
   plc_status extract(plc_context* context, const plc_parameters& parameters,
-                     const plc_extras& extras, plc_surface** surface);
+                     const plc_extras& extras, ProgressLine& line, plc_surface** surface);
   // Of an image by bricks that has been extracted from.
   std::optional<plc_brick_counts> brick_counts(plc_context* context) const;
 
@@ -36,12 +49,9 @@ class ExtractVolume {
   std::unique_ptr<BrickSource> source_;
   LoadedVolume loaded_;
   plc_image whole_{};
-  VolumeHandle volume_;  // of the source
+  BrickFetch fetch_;     // of the source
+  VolumeHandle volume_;  // by it
 };
-
-// The engine's volume of a source, which must outlive it, as must the context. low, high: the range
-// of the voxels where it is known, else NAN. Throws Failure.
-VolumeHandle volume_of(plc_context* context, const BrickSource& source, double low, double high);
 
 // Of the context: what --memory leaves of it for the engine beside `held` bytes of images in
 // memory, and what the machine has. Throws Failure.

@@ -52,7 +52,10 @@ void tell_slicer(double fraction, const std::string& comment) {
 }  // namespace
 
 ProgressLine::ProgressLine(Progress to)
-    : to_(to), terminal_(isatty(STDERR_FILENO) == 1), due_(period_of(to, terminal_)) {
+    : to_(to),
+      terminal_(isatty(STDERR_FILENO) == 1),
+      due_(period_of(to, terminal_)),
+      part_due_(due_) {
   if (to_ != Progress::kSlicer) return;
   due_ = 0;  // the first iteration is told, however short the run
   std::fputs("<filter-start><filter-name>Pellicle</filter-name></filter-start>\n", stdout);
@@ -75,8 +78,21 @@ void ProgressLine::update(const std::string& text, double fraction, double secon
     tell_slicer(told_, text);
     return;
   }
-  std::fprintf(stderr, terminal_ ? "\r\033[K%s%s" : "%s%s\n", text.c_str(),
-               left_of(fraction, seconds).c_str());
+  write(text + left_of(fraction, seconds));
+}
+
+void ProgressLine::update_part(const std::string& text, double fraction, double seconds) {
+  if (to_ == Progress::kNone || seconds < part_due_) return;
+  part_due_ = seconds + period_of(to_, terminal_);
+  if (to_ == Progress::kSlicer) {
+    tell_slicer(told_, text);
+  } else {
+    write(text + left_of(fraction, seconds));
+  }
+}
+
+void ProgressLine::write(const std::string& line) {
+  std::fprintf(stderr, terminal_ ? "\r\033[K%s" : "%s\n", line.c_str());
   std::fflush(stderr);
   written_ = true;
 }

@@ -23,15 +23,21 @@ class ProgressLine {
   void update(const plc_progress& progress);
   // `text` is how far it is, `fraction` what is done.
   void update(const std::string& text, double fraction, double seconds);
+  // A part of the run that is told by itself, for which `seconds` begin at 0: its text and when it
+  // ends.
+  void update_part(const std::string& text, double fraction, double seconds);
   void clear();
   void done();  // when all is written
 
  private:
+  void write(const std::string& line);
+
   Progress to_;
   bool terminal_;
   bool written_ = false;
   double told_ = 0;  // the largest fraction so far: labels that are tried again make it fall
   double due_;       // seconds of the run at which to write next
+  double part_due_;  // of a part
 };
 
 }  // namespace plc::tools
