@@ -514,15 +514,15 @@ typedef struct plc_extras {
   const uint32_t* obstacle_abc;
   int64_t obstacle_face_count;
   double obstacle_gap; /* 0 .. 1, in delta: what lies nearer at the start comes no nearer */
-  /* PLC_INIT_MESH: the mesh is a patch of a larger surface. A value per vertex. 1: held; it stays, to
-     the bit, as does every face of three of them; 0: free; 2: free, and faces of three of these are
-     refined first (3.4). A patch may be open where vertices of borders, and their neighbours, are
-     held. Borders are closed by vertices that the surface has, too, but without faces: see
+  /* PLC_INIT_MESH: the mesh is a patch of a larger surface. A value per vertex. 1: held; it stays,
+     to the bit, as does every face of three of them; 0: free; 2: free, and faces of three of these
+     are refined first (3.4). A patch may be open where vertices of borders, and their neighbours,
+     are held. Borders are closed by vertices that the surface has, too, but without faces: see
      plc_surface_patch(). Late bubbles start within the room alone; the run ends with the level that
      it begins on, and cannot be saved. Not NULL with no face: there is nothing but the room. */
   const uint8_t* mesh_held;
-  /* With it: no vertex leaves this box by moving, voxel indices of the image. Those that are made on
-     edges of held vertices may be outside, by no more than half an edge. */
+  /* With it: no vertex leaves this box by moving, voxel indices of the image. Those that are made
+     on edges of held vertices may be outside, by no more than half an edge. */
   double room_low[3];
   double room_high[3];
   int room_inside; /* 1: without a face all of the room is the surface's inside; 0: outside */

@@ -1,6 +1,7 @@
 // A box of voxels of a level: where alone a part of a surface is worked on.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "kernels/image.h"
@@ -11,6 +12,12 @@ namespace plc {
 struct VoxelRoom {
   std::array<int32_t, 3> low, high;
   bool inside = false;
+
+  // Voxels along an axis.
+  size_t width(size_t axis) const {
+    const int64_t voxels = int64_t{high[axis]} - low[axis] + 1;
+    return static_cast<size_t>(voxels);
+  }
 };
 
 inline VoxelRoom whole_room(const ImageView& image) {

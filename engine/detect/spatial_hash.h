@@ -30,9 +30,9 @@ class SpatialHash {
  public:
   explicit SpatialHash(SimdTarget simd = best_simd_target()) : simd_(simd) {}
 
-  // All living vertices of the mesh that are not absent. cell > 0, mesh units; no vertex is 2^26 cells from the origin.
-  // slack >= 0: how far a vertex may be, on each axis, from where it was when it was last entered:
-  // queries look that much farther. The same table for any executor.
+  // All living vertices of the mesh that are not absent. cell > 0, mesh units; no vertex is 2^26
+  // cells from the origin. slack >= 0: how far a vertex may be, on each axis, from where it was
+  // when it was last entered: queries look that much farther. The same table for any executor.
   void build(const Mesh& mesh, float cell, const Executor& executor, float slack = 0);
   // From now on a vertex may be this far from where it was when it was last entered.
   void set_slack(float slack) { slack_ = slack; }

@@ -34,7 +34,7 @@ class Disagreement {
   void add(int32_t z, Sets& missed) const {
     constexpr size_t kWord = sizeof(uint64_t);
     const int32_t first = room_.low[0];
-    const auto width = static_cast<size_t>(room_.high[0] - first + 1);
+    const size_t width = room_.width(0);
     Vector<float> values(width);
     Vector<uint8_t> inside(width), differ((width + kWord - 1) / kWord * kWord, 0);
     for (int32_t y = room_.low[1]; y <= room_.high[1]; ++y) {
@@ -328,7 +328,7 @@ MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object, flo
   const ImageView& image = object.image;
   Sets missed{VoxelSet(image.dims), VoxelSet(image.dims)};
   if (const Disagreement disagreement(mesh, object, room); disagreement.known()) {
-    executor.run(static_cast<size_t>(room.high[2] - room.low[2] + 1), [&](size_t k) {
+    executor.run(room.width(2), [&](size_t k) {
       disagreement.add(room.low[2] + static_cast<int32_t>(k), missed);
     });
   }

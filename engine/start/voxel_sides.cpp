@@ -140,8 +140,8 @@ VoxelSides::VoxelSides(const Mesh& mesh, const ImageView& image, const VoxelRoom
 
 void VoxelSides::begin_rows(const Mesh& mesh, const ImageView& image) {
   const Rows rows(mesh, image, room_);
-  const auto height = static_cast<size_t>(room_.high[1] - room_.low[1] + 1);
-  const auto depth = static_cast<size_t>(room_.high[2] - room_.low[2] + 1);
+  const size_t height = room_.width(1);
+  const size_t depth = room_.width(2);
   first_.assign(height * depth, 0);
   Vector<uint8_t> turns(depth, 0);  // between the first rows of successive z
   struct Crossing {
@@ -168,7 +168,7 @@ void VoxelSides::begin_rows(const Mesh& mesh, const ImageView& image) {
     return std::tie(l.first[2], l.first[1]) < std::tie(r.first[2], r.first[1]);
   };
   std::stable_sort(crossings.begin(), crossings.end(), by_row);
-  Vector<uint8_t> inside(static_cast<size_t>(room_.high[0] - room_.low[0] + 1));
+  Vector<uint8_t> inside(room_.width(0));
   int64_t agree = 0, differ = 0;
   for (size_t i = 0; i < crossings.size(); ++i) {
     const Crossing& c = crossings[i];

@@ -1,7 +1,6 @@
 #include "tools/blocks/block_patch.h"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 #include "tools/file/failure.h"
@@ -135,7 +134,7 @@ BlockMesh joined(const std::map<Int3, BlockCell>& cells, const std::string& what
           std::lower_bound(mesh.ids.begin(), mesh.ids.end(), cell.ids[v]) - mesh.ids.begin());
       index.push_back(i);
       double* place = &mesh.xyz[3 * size_t{i}];
-      if (placed[i] != 0 && std::memcmp(place, &cell.xyz[3 * v], 3 * sizeof(double)) != 0) {
+      if (placed[i] != 0 && !std::equal(place, place + 3, &cell.xyz[3 * v])) {
         fail(what, "two cells have the same vertex at different places");
       }
       std::copy_n(&cell.xyz[3 * v], 3, place);

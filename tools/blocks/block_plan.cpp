@@ -26,8 +26,10 @@ double number_of(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
-char* field(plc_parameters& p, const plc_parameter_info& info) {
-  return reinterpret_cast<char*>(&p) + info.offset;
+// Value i of the field.
+template <typename T>
+char* place_of(plc_parameters& p, const plc_parameter_info& info, int i) {
+  return reinterpret_cast<char*>(&p) + info.offset + sizeof(T) * static_cast<size_t>(i);
 }
 
 Json parameters_json(plc_parameters p) {
@@ -37,11 +39,11 @@ Json parameters_json(plc_parameters p) {
     for (int k = 0; k < info->count; ++k) {
       if (info->kind == PLC_PARAMETER_REAL) {
         double value = 0;
-        std::memcpy(&value, field(p, *info) + k * sizeof value, sizeof value);
+        std::memcpy(&value, place_of<double>(p, *info, k), sizeof value);
         values.push_back(json_of(value));
       } else {
         int value = 0;
-        std::memcpy(&value, field(p, *info) + k * sizeof value, sizeof value);
+        std::memcpy(&value, place_of<int>(p, *info, k), sizeof value);
         values.push_back(value);
       }
     }
@@ -59,10 +61,10 @@ plc_parameters parameters_of(const Json& json) {
       const Json& given = values.at(static_cast<size_t>(k));
       if (info->kind == PLC_PARAMETER_REAL) {
         const double value = number_of(given);
-        std::memcpy(field(p, *info) + k * sizeof value, &value, sizeof value);
+        std::memcpy(place_of<double>(p, *info, k), &value, sizeof value);
       } else {
         const int value = given.get<int>();
-        std::memcpy(field(p, *info) + k * sizeof value, &value, sizeof value);
+        std::memcpy(place_of<int>(p, *info, k), &value, sizeof value);
       }
     }
   }
