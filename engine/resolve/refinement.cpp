@@ -275,7 +275,7 @@ void refine(Mesh& mesh, const Executor& executor, bool renumbering) {
 }
 
 void refine_marked(Mesh& mesh, const Vector<uint8_t>& marked, const Executor& executor) {
-  assert(mesh.in_order() && marked.size() == mesh.slots());
+  assert(mesh.vertex_count() == mesh.slots() && marked.size() == mesh.slots());
   const uint32_t old_slots = mesh.slots();
   const Vector<uint32_t> abc = mesh.faces();
   Vector<std::array<uint32_t, 2>> edges;

@@ -15,7 +15,7 @@ namespace plc {
 // renumbering: false leaves the ids as they come, without gaps; for comparisons.
 void refine(Mesh& mesh, const Executor& executor, bool renumbering = true);
 
-// The same of a part of the mesh, whose ids are in order: of the faces of three vertices that are
+// The same of a part of the mesh, whose ids have no gaps: of the faces of three vertices that are
 // marked. Edges between those and others stay. delta is as it was.
 void refine_marked(Mesh& mesh, const Vector<uint8_t>& marked, const Executor& executor);
 
