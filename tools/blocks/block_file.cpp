@@ -108,7 +108,7 @@ BlockFile::~BlockFile() {
 }
 
 void BlockFile::damaged() const {
-  throw Failure{path_ + ": is no file of blocks, or not whole; remove it, and its task runs again"};
+  throw Failure{path_ + ": is no file of blocks, or not whole: remove it, and run or plan again"};
 }
 
 void BlockFile::read_at(uint64_t offset, void* data, size_t size) const {
