@@ -37,7 +37,7 @@ struct StartSpec {
   Vector<double> as_given;  // ... the same vertices as the user gave them, for messages
   Vector<uint32_t> abc;     // ... three vertices per face, counter-clockwise seen from outside
   bool patch = false;       // ... a part of a larger surface, perhaps without a face
-  Vector<uint8_t> held;     // ... per vertex of a patch, see patch.h; empty: no patch
+  Vector<uint8_t> held;     // ... of a patch, a value of patch.h per vertex
 };
 
 // What the start needs to know of its level.

@@ -55,9 +55,15 @@ class VoxelSides::Rows {
   // visit(corners in voxels) for the faces of the surface.
   template <typename Visit>
   void visit_faces(const Visit& visit) const {
-    const Vector<uint32_t> abc = mesh_.faces();
-    for (size_t f = 0; f < abc.size(); f += 3) {
-      visit(std::array<Point, 3>{voxel(abc[f]), voxel(abc[f + 1]), voxel(abc[f + 2])});
+    for (uint32_t v = 0; v < mesh_.slots(); ++v) {
+      if (mesh_.is_absent(v)) continue;
+      const uint32_t valence = mesh_.valence(v);
+      for (uint32_t k = 0; k < valence; ++k) {
+        const uint32_t a = mesh_.neighbor(v, k);
+        const uint32_t b = mesh_.neighbor(v, k + 1 == valence ? 0 : k + 1);
+        if (a < v || b < v || mesh_.is_absent(a) || mesh_.is_absent(b)) continue;
+        visit(std::array<Point, 3>{voxel(v), voxel(a), voxel(b)});
+      }
     }
   }
   // visit(first voxel behind the crossing, in the room) for each row that the face crosses there.

@@ -1,12 +1,10 @@
 #include "tools/blocks/precomputed.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <sstream>
-#include <system_error>
 #include <utility>
 
 #include "tools/blocks/block_task.h"
@@ -16,13 +14,12 @@
 #include "tools/blocks/vertex_clusters.h"
 #include "tools/file/atomic_file.h"
 #include "tools/file/failure.h"
+#include "tools/file/folder.h"
 #include "tools/volume/mesh_spaces.h"
 
 namespace plc::tools {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 using Cells = std::map<Int3, BlockCell>;
 
@@ -176,9 +173,7 @@ PrecomputedRecord write_precomputed(const std::string& folder, const BlockPlan& 
                                     const PrecomputedOptions& options) {
   if (!has_draco()) packed_fragment({});  // says so
   const ChunkGrid grid(plan, options.lods);
-  std::error_code error;
-  fs::create_directories(options.output, error);
-  if (error) throw Failure{options.output + ": cannot be made: " + error.message()};
+  make_folder(options.output);
   const std::string info = info_of(plan.image), info_path = options.output + "/info";
   check_info(info_path, info);
 

@@ -12,6 +12,7 @@
 #include "tools/cohort/child.h"
 #include "tools/cohort/slurm.h"
 #include "tools/file/failure.h"
+#include "tools/file/folder.h"
 
 namespace plc::tools {
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <system_error>
 
 #include "tools/cohort/bids.h"
 #include "tools/cohort/cohort_progress.h"
 #include "tools/file/failure.h"
+#include "tools/file/folder.h"
 #include "tools/file/printable.h"
 
 namespace plc::tools {
@@ -147,9 +147,7 @@ class Planner {
 
 Manifest plan_cohort(const PlanOptions& options, const ExtractParser& parser) {
   Manifest manifest = Planner(options, parser).run();
-  std::error_code error;
-  fs::create_directories(options.folder, error);
-  if (error) throw Failure{options.folder + ": cannot be made: " + error.message()};
+  make_folder(options.folder);
   if (!manifest.root.empty()) write_description(options.folder, manifest.root, manifest.version);
   write_manifest(options.folder, manifest);
   return manifest;

@@ -75,12 +75,6 @@ std::string submit_job(const std::vector<std::string>& words) {
   return job.substr(0, job.find_first_of(";\n"));
 }
 
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw Failure{folder + ": cannot be made: " + error.message()};
-}
-
 void write_text(const std::string& path, const std::string& text) {
   AtomicFile file(path);
   file.write(text);

@@ -35,7 +35,6 @@ std::string new_submission(const std::string& folder);
 std::string submit_job(const std::vector<std::string>& words);
 
 // Throws Failure.
-void make_folder(const std::string& folder);
 void write_text(const std::string& path, const std::string& text);
 
 }  // namespace plc::tools

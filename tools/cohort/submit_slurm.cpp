@@ -15,6 +15,7 @@
 #include "tools/cohort/slurm.h"
 #include "tools/cohort/survey.h"
 #include "tools/file/failure.h"
+#include "tools/file/folder.h"
 
 namespace plc::tools {
 namespace {

@@ -58,11 +58,7 @@ void add_block_submit(CLI::App& app, BlockOptions& options) {
       ->type_name("");
   add_folder(app, submit.folder);
   app.add_option_function<std::string>(
-         "--cores",
-         [&submit](const std::string& s) {
-           submit.cores = to_integer("--cores", s);
-           if (submit.cores < 1) refuse_value("--cores", s, "at least 1");
-         },
+         "--cores", [&submit](const std::string& s) { submit.cores = at_least(1, "--cores", s); },
          "Cores of a task")
       ->type_name("N")
       ->default_str("1");
@@ -73,10 +69,7 @@ void add_block_submit(CLI::App& app, BlockOptions& options) {
       ->default_str("4G");
   app.add_option_function<std::string>(
          "--minutes",
-         [&submit](const std::string& s) {
-           submit.minutes = to_number("--minutes", s);
-           if (!(submit.minutes > 0)) refuse_value("--minutes", s, "above 0");
-         },
+         [&submit](const std::string& s) { submit.minutes = above_zero("--minutes", s); },
          "What a block may take at most, above 0")
       ->type_name("M")
       ->default_str("60");

@@ -4,25 +4,18 @@
 #include <charconv>
 #include <cinttypes>
 #include <cstdio>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 
 #include "tools/blocks/block_check.h"
 #include "tools/blocks/block_plan.h"
-#include "tools/blocks/block_sides.h"
 #include "tools/blocks/block_task.h"
 #include "tools/cohort/cohort_progress.h"
 #include "tools/command/block_jobs.h"
-#include "tools/command/clock.h"
 #include "tools/command/engine_handles.h"
-#include "tools/command/extract_inputs.h"
-#include "tools/command/extract_job.h"
 #include "tools/command/extract_volume.h"
 #include "tools/command/mesh_precision.h"
-#include "tools/command/progress_line.h"
-#include "tools/command/surface_mesh.h"
+#include "tools/command/plan_blocks.h"
 #include "tools/file/failure.h"
 #include "tools/mesh/mesh_io.h"
 #include "tools/volume/mesh_spaces.h"
@@ -30,144 +23,6 @@
 namespace plc::tools {
 
 namespace {
-
-namespace fs = std::filesystem;
-
-void make_folder(const std::string& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error) throw Failure{path + ": cannot be made: " + error.message()};
-}
-
-// ---- plan ----------------------------------------------------------------------------------
-
-struct CoarseWatch {
-  ProgressLine& line;
-  const InterruptGuard& interrupt;
-  int until;  // the last level that is done whole
-};
-
-int on_progress(const plc_progress* progress, void* user) {
-  auto& watch = *static_cast<CoarseWatch*>(user);
-  watch.line.update(*progress);
-  return watch.interrupt.interrupted() ? 1 : 0;
-}
-
-plc_verdict on_level(const plc_level_report* level, const plc_surface* /*surface*/, void* user) {
-  const auto& watch = *static_cast<const CoarseWatch*>(user);
-  return level->level <= watch.until ? PLC_VERDICT_STOP : PLC_VERDICT_ACCEPT;
-}
-
-void check_plan(const BlockOptions& options) {
-  const plc_parameters& p = options.extract.parameters;
-  const auto refuse = [](const std::string& why) { throw Failure{"blocks: " + why}; };
-  if (options.from_level < 0 || options.from_level >= kMostBlockLevels) {
-    refuse("--from-level must be 0 to " + std::to_string(kMostBlockLevels - 1));
-  }
-  if (p.levels >= 0 && p.levels <= options.from_level) {
-    refuse("--from-level " + std::to_string(options.from_level) + ": must be below --levels " +
-           std::to_string(p.levels) + ", as the levels above it are done whole");
-  }
-  if (p.force != PLC_FORCE_ISO) refuse("only --force iso can be done by blocks");
-  if (options.extract.isos.size() != 1) refuse("one --iso must be given");
-}
-
-// Before the coarse levels are done.
-int64_t checked_margin(const BlockOptions& options, const plc_image& image) {
-  const int64_t margin =
-      margin_of(BlockPlan::band_of(options.extract.parameters, image, options.from_level));
-  if (options.side >= int64_t{1} << 31U) {
-    throw Failure{"blocks: --side " + std::to_string(options.side) + ": must be below 2^31"};
-  }
-  if (options.side >= 4 * margin) {
-    const BlockGrid grid({image.dims[0], image.dims[1], image.dims[2]}, options.side, margin);
-    if (!too_many_blocks(grid)) return margin;
-    throw Failure{"blocks: more than 2^24 of them, use larger ones"};
-  }
-  throw Failure{
-      "blocks: --side " + std::to_string(options.side) + ": must be " + std::to_string(4 * margin) +
-      " or more for edges as long as these and --from-level " + std::to_string(options.from_level)};
-}
-
-BlockPlan plan_of(const BlockOptions& options, plc_context* context, const plc_image& image,
-                  int64_t margin, const plc_surface* surface) {
-  BlockPlan plan;
-  plan.version = plc_version_string();
-  plan.input = fs::absolute(options.extract.input).lexically_normal().string();
-  plan.image = image;
-  plan.from_level = options.from_level;
-  plan.grid = BlockGrid({image.dims[0], image.dims[1], image.dims[2]}, options.side, margin);
-  plc_parameters_defaults(&plan.parameters);
-  demand(context, plc_surface_parameters(context, surface, &plan.parameters));
-  demand(context, plc_surface_input_range(context, surface, &plan.low, &plan.high));
-  char hash[24];
-  std::snprintf(hash, sizeof hash, "%016" PRIx64, plc_surface_hash(surface));
-  plan.hash = hash;
-  return plan;
-}
-
-int run_plan(BlockOptions& options, InterruptGuard& interrupt) {
-  check_plan(options);
-  const double start = now();
-  interrupt.end_at_once();
-  ExtractVolume volume(options.extract);
-  const int64_t margin = checked_margin(options, volume.image());
-  ExtractJob job = jobs_of(options.extract)[0];
-  resolve(job, volume.voxels());
-  plc_context_options context_options = options.extract.context;
-  context_options.memory_limit = memory_limit(options.extract, volume.held());
-  const ContextHandle context = make_context(context_options);
-  const ExtractInputs inputs(options.extract, volume.whole());
-  ProgressLine line(options.extract.progress);
-  CoarseWatch watch{line, interrupt, options.from_level + 1};
-  plc_extras extras = inputs.extras();
-  extras.progress = on_progress;
-  extras.progress_user = &watch;
-  extras.level = on_level;
-  extras.level_user = &watch;
-  interrupt.note_first();
-  plc_surface* made = nullptr;
-  const plc_status status = volume.extract(context.get(), job.parameters, extras, line, &made);
-  if (status == PLC_CANCELLED) return interrupt.tell();
-  demand(context.get(), status);
-  const SurfaceHandle surface(made);
-  line.clear();
-  if (plc_surface_level_count(surface.get()) == 0 || plc_surface_face_count(surface.get()) == 0) {
-    throw Failure{"blocks: the coarse levels hold no surface"};
-  }
-  BlockPlan plan = plan_of(options, context.get(), volume.image(), margin, surface.get());
-  if (plan.parameters.levels <= plan.from_level) {
-    throw Failure{"blocks: --from-level " + std::to_string(plan.from_level) +
-                  ": the image has no more than " + std::to_string(plan.parameters.levels) +
-                  " levels above it"};
-  }
-  const TriangleMesh mesh = mesh_of(context.get(), surface.get(), PLC_SPACE_VOXEL);
-  plan.start_vertices = static_cast<int64_t>(mesh.xyz.size() / 3);
-  plan.start_faces = static_cast<int64_t>(mesh.abc.size() / 3);
-  plan.inside = blocks_inside(plan.grid, mesh.xyz, mesh.abc);
-  interrupt.only_note();
-  make_folder(options.folder + "/start");
-  if (fs::exists(options.folder + "/plan.json")) {
-    const BlockPlan before = read_plan(options.folder);
-    if (before.hash != plan.hash || before.input != plan.input ||
-        before.grid.side() != plan.grid.side() || before.from_level != plan.from_level) {
-      throw Failure{options.folder + ": has another plan already"};
-    }
-  }
-  for (int step = 0; step < plan.steps(); step += BlockGrid::kColours) {
-    make_folder(options.folder + "/level" + std::to_string(plan.level_of(step)));
-  }
-  write_start(options.folder, plan, mesh.xyz, mesh.abc);
-  write_plan(options.folder, plan);
-  if (options.extract.progress != Progress::kNone) {
-    const Int3& n = plan.grid.blocks();
-    std::printf("planned  %" PRId64 " x %" PRId64 " x %" PRId64 " blocks of %" PRId64
-                " voxels, %d steps, from %" PRId64 " vertices, in %.1f s\n",
-                n[0], n[1], n[2], plan.grid.side(), plan.steps(), plan.start_vertices,
-                now() - start);
-  }
-  return 0;
-}
 
 // ---- run -----------------------------------------------------------------------------------
 
@@ -373,42 +228,6 @@ void add_folder(CLI::App& app, std::string& folder) {
   app.add_option("DIR", folder, "Folder of a plan by blocks")->required()->type_name("");
 }
 
-void add_plan(CLI::App& app, BlockOptions& options) {
-  add_extract_options(app, options.extract);
-  static const std::set<std::string> other = {
-      "output",          "space",     "nifti-frame", "report",  "trace",    "each-level",
-      "slicer-progress", "box",       "keep",        "feature", "sigma",    "init",
-      "attach",          "structure", "force",       "labels",  "gradient", "gradient-tangent",
-      "gradient-bound"};
-  std::vector<CLI::Option*> gone;
-  for (CLI::Option* option : app.get_options()) {
-    if (!option->get_lnames().empty() && other.contains(option->get_lnames()[0])) {
-      gone.push_back(option);
-    }
-  }
-  for (CLI::Option* option : gone) app.remove_option(option);
-  options.extract.output = "surface.ply";
-  app.add_option("-o,--output", options.folder, "Folder of the plan; made where it is not there")
-      ->required()
-      ->type_name("DIR")
-      ->group("Blocks");
-  app.add_option("--side", options.side, "Voxels of a block on each axis")
-      ->type_name("N")
-      ->default_str("512")
-      ->group("Blocks");
-  app.add_option("--from-level", options.from_level,
-                 "The coarsest level that is done by blocks; those above it are done by plan")
-      ->type_name("H")
-      ->default_str("1")
-      ->group("Blocks");
-}
-
-int at_least(int least, const std::string& option, const std::string& text) {
-  const int value = to_integer(option, text);
-  if (value < least) refuse_value(option, text, "at least " + std::to_string(least));
-  return value;
-}
-
 void add_run(CLI::App& app, BlockOptions& options) {
   add_folder(app, options.folder);
   const auto text = [&](const std::string& name, const std::string& type,
@@ -422,13 +241,7 @@ void add_run(CLI::App& app, BlockOptions& options) {
        "steps before it must be done",
        [&o = options](const std::string& s) { o.step = at_least(0, "--step", s); });
   text("--task", "I/N", "1/1", "The I-th of N shares of the step, I from 1",
-       [&o = options](const std::string& s) {
-         const size_t slash = s.find('/');
-         if (slash == std::string::npos) refuse_value("--task", s, "I/N, as in 3/10");
-         o.part = at_least(1, "--task", s.substr(0, slash));
-         o.parts = at_least(1, "--task", s.substr(slash + 1));
-         if (o.part > o.parts) refuse_value("--task", s, "I/N with I not above N");
-       });
+       [&o = options](const std::string& s) { to_share("--task", s, o.part, o.parts); });
   text("--threads", "N", "all", "Threads",
        [&o = options](const std::string& s) { o.threads = at_least(1, "--threads", s); });
   text("--memory", "SIZE", "what is left", "Memory of the process, as in 4G",
@@ -469,8 +282,9 @@ void add_precomputed(CLI::App& app, BlockOptions& options) {
 
 void add_block_options(CLI::App& command, BlockOptions& options) {
   command.require_subcommand(1);
-  add_plan(*command.add_subcommand("plan", "Do the coarse levels, and plan the tasks of the rest"),
-           options);
+  add_block_plan(
+      *command.add_subcommand("plan", "Do the coarse levels, and plan the tasks of the rest"),
+      options);
   add_run(*command.add_subcommand("run", "Do the tasks that are left, or a share of them"),
           options);
   CLI::App* check =
@@ -501,7 +315,7 @@ void add_block_options(CLI::App& command, BlockOptions& options) {
 
 int run_block_command(const CLI::App& command, BlockOptions& options, InterruptGuard& interrupt) {
   const std::string& name = command.get_subcommands()[0]->get_name();
-  if (name == "plan") return run_plan(options, interrupt);
+  if (name == "plan") return run_block_plan(options, interrupt);
   if (name == "run") return run_tasks(options, interrupt);
   if (name == "check") return run_check(options, interrupt);
   if (name == "status") return run_block_status(options);

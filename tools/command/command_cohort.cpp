@@ -32,18 +32,6 @@ void add_folder(CLI::App& app, std::string& folder) {
       ->type_name("");
 }
 
-int at_least_one(const std::string& option, const std::string& text) {
-  const int value = to_integer(option, text);
-  if (value < 1) refuse_value(option, text, "at least 1");
-  return value;
-}
-
-double above_zero(const std::string& option, const std::string& text) {
-  const double value = to_number(option, text);
-  if (!(value > 0)) refuse_value(option, text, "above 0");
-  return value;
-}
-
 void add_plan(CLI::App& app, CohortOptions& options) {
   PlanOptions& plan = options.plan;
   app.add_option("LIST", plan.list,
@@ -88,21 +76,15 @@ void add_plan(CLI::App& app, CohortOptions& options) {
 void add_run(CLI::App& app, RunOptions& run) {
   add_folder(app, run.folder);
   add_text(app, "--task", "I/N", "1/1", "The I-th of N shares, I from 1",
-           [&run](const std::string& s) {
-             const size_t slash = s.find('/');
-             if (slash == std::string::npos) refuse_value("--task", s, "I/N, as in 3/10");
-             run.part = at_least_one("--task", s.substr(0, slash));
-             run.parts = at_least_one("--task", s.substr(slash + 1));
-             if (run.part > run.parts) refuse_value("--task", s, "I/N with I not above N");
-           });
+           [&run](const std::string& s) { to_share("--task", s, run.part, run.parts); });
   app.add_option("--scans", run.scans, "Only scans named in this file, a name on each line")
       ->type_name("FILE");
   app.add_flag("--retry-failed", run.retry_failed, "Run scans again that have failed");
   add_text(app, "--jobs", "N", "1",
            "Scans at once: more than the first one only when it is known what one needs",
-           [&run](const std::string& s) { run.jobs = at_least_one("--jobs", s); });
+           [&run](const std::string& s) { run.jobs = at_least(1, "--jobs", s); });
   add_text(app, "--threads", "N", "the cores divided by the jobs", "Threads of each scan",
-           [&run](const std::string& s) { run.threads = at_least_one("--threads", s); });
+           [&run](const std::string& s) { run.threads = at_least(1, "--threads", s); });
   add_text(app, "--memory", "GIB", "what is left", "Memory for all jobs together",
            [&run](const std::string& s) {
              constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
@@ -124,7 +106,7 @@ void add_submit(CLI::App& app, SubmitOptions& submit) {
   add_text(app, "--minutes", "M", "60", "What a task is to take, above 0",
            [&submit](const std::string& s) { submit.minutes = above_zero("--minutes", s); });
   add_text(app, "--cores", "N", "1, more for scans that would not fit in a task", "Cores of a task",
-           [&submit](const std::string& s) { submit.cores = at_least_one("--cores", s); });
+           [&submit](const std::string& s) { submit.cores = at_least(1, "--cores", s); });
   app.add_option("--option", submit.slurm,
                  "Further option of sbatch and srun, as in --option=--partition=long. May be given "
                  "several times")

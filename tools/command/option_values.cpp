@@ -84,6 +84,26 @@ int to_integer(const std::string& option, const std::string& text) {
   return value;
 }
 
+int at_least(int least, const std::string& option, const std::string& text) {
+  const int value = to_integer(option, text);
+  if (value < least) refuse_value(option, text, "at least " + std::to_string(least));
+  return value;
+}
+
+double above_zero(const std::string& option, const std::string& text) {
+  const double value = to_number(option, text);
+  if (!(value > 0)) refuse_value(option, text, "above 0");
+  return value;
+}
+
+void to_share(const std::string& option, const std::string& text, int& part, int& parts) {
+  const size_t slash = text.find('/');
+  if (slash == std::string::npos) refuse_value(option, text, "I/N, as in 3/10");
+  part = at_least(1, option, text.substr(0, slash));
+  parts = at_least(1, option, text.substr(slash + 1));
+  if (part > parts) refuse_value(option, text, "I/N with I not above N");
+}
+
 int64_t to_bytes(const std::string& option, const std::string& text) {
   constexpr std::string_view kUnits = "KMGT";
   constexpr double kMost = 1e18;

@@ -18,6 +18,11 @@ std::string text_of(double value);
 // Finite numbers only; the whole text must be one.
 double to_number(const std::string& option, const std::string& text);
 int to_integer(const std::string& option, const std::string& text);
+int at_least(int least, const std::string& option, const std::string& text);
+double above_zero(const std::string& option, const std::string& text);
+
+// "I/N": the I-th of N shares, 1 <= I <= N.
+void to_share(const std::string& option, const std::string& text, int& part, int& parts);
 
 // Bytes: "4G", "512M", "100000"; K, M, G and T are powers of 1024.
 int64_t to_bytes(const std::string& option, const std::string& text);
