@@ -63,6 +63,9 @@ refused "shares without a step" "--step" "$pellicle" blocks run a --task 1/2
 refused "small blocks" "--side 64: must be" "$pellicle" blocks plan chain.ome.zarr --iso 127 -o out/x --side 64 --from-level 0
 refused "deep" "below --levels" "$pellicle" blocks plan chain.ome.zarr --iso 127 -o out/x --levels 1 --from-level 1
 refused "no iso" "--iso" "$pellicle" blocks plan chain.ome.zarr -o out/x --from-level 0
+"$pellicle" phantom chain --size 18 --type u8 -o tiny.mha || fails phantom
+refused "nothing on coarse levels" "shows above level 0: it can only be extracted whole" \
+  "$pellicle" blocks plan tiny.mha --iso 120 --levels 2 -o out/x --side 200 --from-level 0
 "$pellicle" phantom chain --size 250 --type u8 -o other.ome.zarr
 sed -i 's/chain.ome.zarr/other.ome.zarr/' b/plan.json
 rm b/level0/1-1-1.blk

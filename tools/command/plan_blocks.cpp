@@ -158,8 +158,9 @@ int run_block_plan(BlockOptions& options, InterruptGuard& interrupt) {
                                           plc_surface_level_count(surface.get()) - 1, &last));
   if (last.level <= options.from_level) {
     throw Failure{"blocks: nothing that holds a surface shows above level " +
-                  std::to_string(last.level) + "; use --from-level " +
-                  std::to_string(std::max(0, last.level - 1))};
+                  std::to_string(last.level) +
+                  (last.level > 0 ? "; use --from-level " + std::to_string(last.level - 1)
+                                  : std::string(": it can only be extracted whole"))};
   }
   BlockPlan plan = plan_of(options, context.get(), volume.image(), margin, surface.get());
   if (plan.parameters.levels <= plan.from_level) {
