@@ -29,6 +29,11 @@ inline Four load_four(const Float4& p) {
   std::memcpy(&f, &bits, sizeof f);
   return f;
 }
+inline FourInts load_four(const uint32_t* four) {
+  FourInts f;
+  std::memcpy(&f, four, sizeof f);
+  return f;
+}
 inline void store_four(Four f, float* four) {
   std::memcpy(four, &f, sizeof f);
 }
@@ -48,6 +53,15 @@ inline FourInts floor_four(Four f) {
   return toward_zero + (__builtin_convertvector(toward_zero, Four) > f);
 }
 
+// Bit k for each lane k of a mask that is set.
+inline uint32_t lane_bits(FourInts mask) {
+  constexpr FourInts kBits{1, 2, 4, 8};
+  mask &= kBits;
+  uint64_t halves[2];
+  std::memcpy(halves, &mask, sizeof halves);
+  const uint64_t pairs = halves[0] | halves[1];
+  return static_cast<uint32_t>(pairs | pairs >> 32);
+}
 // Whether no lane of a mask is set.
 inline bool no_lane(FourInts mask) {
   uint64_t halves[2];

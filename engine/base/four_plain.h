@@ -34,8 +34,24 @@ inline Four operator+(const Four& a, const Four& b) {
 inline Four operator-(const Four& a, const Four& b) {
   return lanes<Four>([&](int k) { return a[k] - b[k]; });
 }
+inline Four operator-(const Four& a, float s) {
+  return lanes<Four>([&](int k) { return a[k] - s; });
+}
+inline Four operator-(float s, const Four& a) {
+  return lanes<Four>([&](int k) { return s - a[k]; });
+}
 inline Four operator*(const Four& a, float s) {
   return lanes<Four>([&](int k) { return a[k] * s; });
+}
+// Masks: -1 where it holds, else 0.
+inline FourInts operator>=(const Four& a, float s) {
+  return lanes<FourInts>([&](int k) { return a[k] >= s ? -1 : 0; });
+}
+inline FourInts operator==(const FourInts& a, int32_t i) {
+  return lanes<FourInts>([&](int k) { return a[k] == i ? -1 : 0; });
+}
+inline FourInts operator|(const FourInts& a, const FourInts& b) {
+  return lanes<FourInts>([&](int k) { return a[k] | b[k]; });
 }
 inline FourInts operator>>(const FourInts& a, int32_t bits) {
   return lanes<FourInts>([&](int k) { return a[k] >> bits; });
@@ -48,6 +64,11 @@ inline Four load_four(const float* four) {
 }
 inline Four load_four(const Float4& p) {
   return {{p.x, p.y, p.z, 0}};
+}
+inline FourInts load_four(const uint32_t* four) {
+  FourInts f;
+  std::memcpy(&f, four, sizeof f);
+  return f;
 }
 inline void store_four(const Four& f, float* four) {
   std::memcpy(four, &f, sizeof f);
@@ -63,6 +84,11 @@ inline Four max_four(const Four& a, const Four& b) {
 }
 inline FourInts floor_four(const Four& f) {
   return lanes<FourInts>([&](int k) { return static_cast<int32_t>(std::floor(f[k])); });
+}
+inline uint32_t lane_bits(const FourInts& mask) {
+  uint32_t bits = 0;
+  for (int k = 0; k < 4; ++k) bits |= (static_cast<uint32_t>(mask[k]) & 1U) << k;
+  return bits;
 }
 inline bool same_four(const Four& a, const Four& b) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2] && a[3] == b[3];

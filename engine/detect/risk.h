@@ -29,9 +29,11 @@ inline constexpr uint32_t kRiskRing = 31;
 
 // A vertex, number 0, and its ring. Face k has the numbers 0, k + 1 and the next one's.
 struct RiskStar {
-  // Coordinates in streams, filled with those of number 0 up to whole vectors.
-  static constexpr uint32_t kLanes = 8;
-  using Stream = std::array<float, kRiskRing + 1>;
+  // Filled with those of number 0 up to whole vectors; there is room for one more.
+  using Stream = std::array<float, kRiskRing + 5>;
+  struct Extent {
+    float low, high;
+  };
 
   // valence of v <= kRiskRing.
   RiskStar(const Mesh& mesh, uint32_t v);
@@ -39,12 +41,9 @@ struct RiskStar {
   uint32_t next(uint32_t k) const { return k + 1 == faces ? 1 : k + 2; }
   // Where all of them lie along an axis.
   Stream along(Vec3 axis) const;
-  struct Extent {
-    float low, high;
-  };
   Extent extent(const Stream& along) const;
 
-  uint32_t faces, padded;
+  uint32_t faces, padded;  // padded > faces
   std::array<uint32_t, kRiskRing + 1> id;
   Stream x, y, z;
 };
@@ -55,22 +54,18 @@ class Risk {
   // valence of v <= kRiskRing.
   Risk(const Mesh& mesh, uint32_t v);
   // False when planes that have kRiskGap room lie between the faces of v and those of w, but for
-  // pairs of faces with a common vertex. v and w are not neighbours.
+  // pairs of faces with a common vertex. v and w are not neighbours. What is said of v and w holds
+  // of w and v, too.
   bool may_meet(uint32_t w) const;
 
  private:
-  bool faces_may_meet(const RiskStar& of_w, const RiskStar::Stream& first,
-                      const RiskStar::Stream& second_v, const RiskStar::Stream& second_w,
-                      float second_room) const;
-
   const Mesh& mesh_;
-  float gap_;
+  float steps_;
   RiskStar star_;
   // Along the normal of v.
   Vec3 normal_;
   RiskStar::Stream along_;
   RiskStar::Extent extent_;
-  float room_;
 };
 
 }  // namespace plc

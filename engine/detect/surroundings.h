@@ -83,6 +83,7 @@ class Surroundings {
   const VertexBytes* risk_ = nullptr;  // of this search
   Vector<Task> tasks_;
   Spares<Scratch> scratches_;
+  Vector<uint8_t> is_due_;  // in this search; by vertex
   Vector<VertexPair> too_near_;
   Vector<uint32_t> at_risk_;
 };

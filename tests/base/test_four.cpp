@@ -48,3 +48,12 @@ TEST_CASE("the place of a record alone is loaded, bit for bit", "[base]") {
   CHECK(place[2] == 0x1p-149F);
   CHECK(place[3] == 0);
 }
+
+TEST_CASE("a comparison of four has a bit for each lane where it holds", "[base]") {
+  const uint32_t ids[4] = {7, 2, 7, ~0U};
+  CHECK(plc::lane_bits(plc::load_four(ids) == 7) == 5);
+  CHECK(plc::lane_bits(plc::load_four(ids) == -1) == 8);
+  const Four values{1, 2, 3, 4};
+  CHECK(plc::lane_bits(values - 1.0F >= 2.0F) == 12);
+  CHECK(plc::lane_bits((5.0F - values >= 4.0F) | (values >= 4.0F)) == 9);
+}
