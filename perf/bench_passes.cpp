@@ -317,9 +317,10 @@ void add_missed_places(Suite& suite, const Mesh& start) {
       const auto delta = static_cast<float>(b.mesh.delta);
       plc::VoxelSet tried;
       return timed([&] {
-        *count = plc::find_missed_places(b.mesh, {guide.image, guide.iso, true}, 3 * delta,
-                                         plc::kSmallestBubble * delta, b.schedule, tried,
-                                         plc::whole_room(guide.image))
+        *count = plc::find_missed_places(
+                     b.mesh, {guide.image, guide.iso, true},
+                     {3 * delta, plc::kSmallestBubble * delta, plc::kThinSheet * delta}, b.schedule,
+                     tried, plc::whole_room(guide.image))
                      .count;
       });
     };

@@ -160,6 +160,9 @@ inline constexpr double kTinyVolume = 0.5;
 // Radius of the smallest bubble, in delta: an icosahedron of it has edges of 1.2 delta. What holds
 // no such ball has sheets that are nearer than (3) allows.
 inline constexpr float kSmallestBubble = 1.15F;
+// Sheets of a place that are thinner, in delta, start without a bubble where the mesh is uniform:
+// nearly all of theirs would be cut away by (3) before the first iteration, vertex by vertex.
+inline constexpr float kThinSheet = 1.8F;
 // Room between a bubble and the vertices of the rest, in delta: (3) and a little. No point of a
 // face is this far from its corners.
 inline constexpr float kBubbleGap = 1.5F;

@@ -102,9 +102,10 @@ Status start_late_bubbles(const ImageObject& object, const Schedule& schedule, M
   float diagonal = 0;
   for (const float scale : object.image.scale) diagonal += 1 / (scale * scale);
   const float finest = mesh.sizing == nullptr ? delta : delta * mesh.sizing->field.finest();
-  const float clearance = kBubbleGap * finest + 0.9F * std::sqrt(diagonal);
-  const MissedPlaces places =
-      find_missed_places(mesh, object, clearance, kSmallestBubble * delta, schedule, tried, room);
+  const PlaceLimits limits{kBubbleGap * finest + 0.9F * std::sqrt(diagonal),
+                           kSmallestBubble * delta,
+                           mesh.sizing == nullptr ? kThinSheet * delta : 0};
+  const MissedPlaces places = find_missed_places(mesh, object, limits, schedule, tried, room);
   for (const Missed kind : {Missed::kPart, Missed::kCavity}) {
     const int64_t count = places.count[static_cast<size_t>(kind)];
     if (count == 0) continue;

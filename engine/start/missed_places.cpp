@@ -71,13 +71,13 @@ struct Place {
   bool holds = false;  // a ball
   bool tried = false;
   int64_t voxels = 0;
-  Voxel low, high;
 };
 
 class Search {
  public:
-  Search(const ImageView& image, Sets& missed) : image_(image), missed_(missed) {
-    for (size_t a = 0; a < 3; ++a) length_[a] = 1 / image.scale[a];
+  Search(const ImageObject& object, Sets& missed)
+      : image_(object.image), iso_(object.iso), missed_(missed) {
+    for (size_t a = 0; a < 3; ++a) length_[a] = 1 / image_.scale[a];
   }
 
   // Nothing within `clearance` of a vertex is missed; nor of a face, which may be larger, where
@@ -137,7 +137,6 @@ class Search {
   // The place of the seed, taken out of `left`.
   Place examine(const Voxel& seed, const VoxelSet& kind, const VoxelSet& tried, VoxelSet& left) {
     Place place;
-    place.low = place.high = seed;
     left.erase(seed);
     flood(
         seed,
@@ -145,10 +144,6 @@ class Search {
           ++place.voxels;
           place.tried = place.tried || tried.has(v);
           place.holds = place.holds || free(v, kind, around_) || free(v, kind, between_);
-          for (size_t a = 0; a < 3; ++a) {
-            place.low[a] = std::min(place.low[a], v[a]);
-            place.high[a] = std::max(place.high[a], v[a]);
-          }
         },
         [&](const Voxel& v) {
           const bool found = left.has(v);
@@ -158,16 +153,33 @@ class Search {
     return place;
   }
 
-  // Puts the place of the seed into both sets.
-  void keep(const Voxel& seed, const VoxelSet& kind, VoxelSet& kept, VoxelSet& tried) {
-    kept.insert(seed);
+  // Puts the place of the seed into `tried`, and into `kept`, whose box grows by it, what is to get
+  // a bubble: where the place is as thick as `thinnest` on every axis, and the voxels beside that.
+  // False where it is so nowhere.
+  bool keep(const Voxel& seed, const VoxelSet& kind, float thinnest, VoxelSet& tried,
+            VoxelSet& kept, Voxel& low, Voxel& high) {
+    bool any = false;
+    tried.insert(seed);
     flood(
-        seed, [&](const Voxel& v) { tried.insert(v); },
+        seed,
         [&](const Voxel& v) {
-          const bool found = kind.has(v) && !kept.has(v);
-          if (found) kept.insert(v);
+          if (!is_thick(v, kind, thinnest)) return;
+          any = true;
+          visit_around(v, [&](const Voxel& w) {
+            if (!kind.has(w)) return;
+            kept.insert(w);
+            for (size_t a = 0; a < 3; ++a) {
+              low[a] = std::min(low[a], w[a]);
+              high[a] = std::max(high[a], w[a]);
+            }
+          });
+        },
+        [&](const Voxel& v) {
+          const bool found = kind.has(v) && !tried.has(v);
+          if (found) tried.insert(v);
           return found;
         });
+    return any;
   }
 
  private:
@@ -276,16 +288,24 @@ class Search {
       next_.clear();
       for (const Voxel& at : front_) {
         visit(at);
-        for (int32_t z = -1; z <= 1; ++z) {
-          for (int32_t y = -1; y <= 1; ++y) {
-            for (int32_t x = -1; x <= 1; ++x) {
-              const Voxel v{at[0] + x, at[1] + y, at[2] + z};
-              if (within(v) && take(v)) next_.push_back(v);
-            }
-          }
-        }
+        visit_around(at, [&](const Voxel& v) {
+          if (take(v)) next_.push_back(v);
+        });
       }
       front_.swap(next_);
+    }
+  }
+
+  // visit(voxel) for a voxel of the image and those around it.
+  template <typename Visit>
+  void visit_around(const Voxel& at, const Visit& visit) const {
+    for (int32_t z = -1; z <= 1; ++z) {
+      for (int32_t y = -1; y <= 1; ++y) {
+        for (int32_t x = -1; x <= 1; ++x) {
+          const Voxel v{at[0] + x, at[1] + y, at[2] + z};
+          if (within(v)) visit(v);
+        }
+      }
     }
   }
 
@@ -313,7 +333,37 @@ class Search {
     });
   }
 
+  // How far the image is from iso.
+  float depth(const Voxel& v) const {
+    return std::abs(image_value(image_, v[0], v[1], v[2]) - iso_);
+  }
+
+  // Whether the iso-surface is `thinnest` apart on the two sides of a voxel, along each axis.
+  bool is_thick(const Voxel& at, const VoxelSet& kind, float thinnest) const {
+    for (size_t a = 0; a < 3; ++a) {
+      float extent = 0;
+      for (const int32_t way : {-1, 1}) {
+        Voxel last = at, next = at;
+        for (next[a] += way; extent < thinnest && within(next) && kind.has(next); next[a] += way) {
+          extent += length_[a];
+          last = next;
+        }
+        if (extent < thinnest) extent += length_[a] * part_inside(last, next);
+      }
+      if (extent < thinnest) return false;
+    }
+    return true;
+  }
+
+  // How much of the way from a voxel to the next, which is on the other side, lies inside.
+  float part_inside(const Voxel& last, const Voxel& next) const {
+    if (!within(next)) return 0.5F;  // an image ends half a voxel from its last
+    const float inside = depth(last);
+    return inside == 0 ? 0 : inside / (inside + depth(next));
+  }
+
   const ImageView& image_;
+  float iso_;
   Sets& missed_;
   std::array<float, 3> length_{};  // of a voxel, mesh units
   Vector<Voxel> around_, between_;
@@ -322,9 +372,9 @@ class Search {
 
 }  // namespace
 
-MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object, float clearance,
-                                float radius, const Executor& executor, VoxelSet& tried,
-                                const VoxelRoom& room) {
+MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object,
+                                const PlaceLimits& limits, const Executor& executor,
+                                VoxelSet& tried, const VoxelRoom& room) {
   const ImageView& image = object.image;
   Sets missed{VoxelSet(image.dims), VoxelSet(image.dims)};
   if (const Disagreement disagreement(mesh, object, room); disagreement.known()) {
@@ -332,12 +382,12 @@ MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object, flo
       disagreement.add(room.low[2] + static_cast<int32_t>(k), missed);
     });
   }
-  Search search(image, missed);
+  Search search(object, missed);
   const float apart = mesh.sizing == nullptr
                           ? 0
                           : kMaxEdge * mesh.sizing->field.finest() * static_cast<float>(mesh.delta);
-  search.clear_near(mesh, apart, clearance, executor);
-  search.list_ball(radius);
+  search.clear_near(mesh, apart, limits.clearance, executor);
+  search.list_ball(limits.radius);
   MissedPlaces places;
   places.low.fill({image.dims[0], image.dims[1], image.dims[2]});
   places.high.fill({-1, -1, -1});
@@ -349,11 +399,9 @@ MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object, flo
       const Place place = search.examine(seed, missed[k], tried, left);
       const bool thin = mesh.sizing != nullptr && place.voxels >= kPlaceVoxels;
       if (!(place.holds || thin) || place.tried) return;
-      ++places.count[k];
-      search.keep(seed, missed[k], places.voxels[k], tried);
-      for (size_t a = 0; a < 3; ++a) {
-        places.low[k][a] = std::min(places.low[k][a], place.low[a]);
-        places.high[k][a] = std::max(places.high[k][a], place.high[a]);
+      if (search.keep(seed, missed[k], limits.thinnest, tried, places.voxels[k], places.low[k],
+                      places.high[k])) {
+        ++places.count[k];
       }
     });
   }

@@ -23,14 +23,23 @@ struct MissedPlaces {
   bool is(const Voxel& voxel, Missed m) const { return voxels[static_cast<size_t>(m)].has(voxel); }
 };
 
+// What counts as a place, and as a part of it; mesh units.
+struct PlaceLimits {
+  float clearance;
+  float radius;
+  float thinnest = 0;
+};
+
 // Places are sets of voxels connected by faces, edges or corners: of the object, outside the
-// surface - or not of it, and inside - and none within `clearance` (mesh units) of a vertex or,
-// where the mesh is adaptive, of a face. Those that hold no ball of `radius`, where the mesh is
-// adaptive nor kPlaceVoxels voxels, and those with a voxel that `tried` holds, are left out; the
-// others are put into it, which is of the image's voxels or of none yet. The same for any executor.
+// surface - or not of it, and inside - and none within `clearance` of a vertex or, where the mesh
+// is adaptive, of a face. Those that hold no ball of `radius`, where the mesh is adaptive nor
+// kPlaceVoxels voxels, and those with a voxel that `tried` holds, are left out; the others are put
+// into it, which is of the image's voxels or of none yet. Of a place those voxels get a bubble
+// where the image is on the same side of iso for `thinnest` along each axis, and those beside them;
+// a place without any gets none. The same for any executor.
 // room: of a patch, where all of its faces are and where alone is looked; of others the image.
-MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object, float clearance,
-                                float radius, const Executor& executor, VoxelSet& tried,
-                                const VoxelRoom& room);
+MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object,
+                                const PlaceLimits& limits, const Executor& executor,
+                                VoxelSet& tried, const VoxelRoom& room);
 
 }  // namespace plc

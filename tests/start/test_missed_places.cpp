@@ -12,6 +12,7 @@ namespace {
 using plc::Mesh;
 using plc::Missed;
 using plc::MissedPlaces;
+using plc::PlaceLimits;
 using plc::Voxel;
 using plc::VoxelSet;
 using samples::Ball;
@@ -26,15 +27,15 @@ void surface_around(Mesh& mesh, const Ball& b) {
 }
 
 MissedPlaces find(const Mesh& mesh, const BallScene& scene, VoxelSet& tried,
-                  float clearance = kClearance, float radius = kRadius) {
-  return plc::find_missed_places(mesh, {scene.view(), kIso, true}, clearance, radius,
-                                 samples::kSerial, tried, plc::whole_room(scene.view()));
+                  const PlaceLimits& limits = {kClearance, kRadius}) {
+  return plc::find_missed_places(mesh, {scene.view(), kIso, true}, limits, samples::kSerial, tried,
+                                 plc::whole_room(scene.view()));
 }
 
-MissedPlaces find(const Mesh& mesh, const BallScene& scene, float clearance = kClearance,
-                  float radius = kRadius) {
+MissedPlaces find(const Mesh& mesh, const BallScene& scene,
+                  const PlaceLimits& limits = {kClearance, kRadius}) {
   VoxelSet tried;
-  return find(mesh, scene, tried, clearance, radius);
+  return find(mesh, scene, tried, limits);
 }
 
 std::vector<Voxel> all_of(const VoxelSet& set) {
@@ -109,7 +110,7 @@ TEST_CASE("dark objects in bright images are told by the other side of iso", "[m
   for (float& v : scene.values) v = 1 - v;
   VoxelSet tried;
   const MissedPlaces dark =
-      plc::find_missed_places(mesh, {scene.view(), kIso, false}, kClearance, kRadius,
+      plc::find_missed_places(mesh, {scene.view(), kIso, false}, {kClearance, kRadius},
                               samples::kSerial, tried, plc::whole_room(scene.view()));
   CHECK(dark.count == std::array<int64_t, 2>{1, 0});
   CHECK(all_of(dark, Missed::kPart) == all_of(bright, Missed::kPart));
@@ -121,10 +122,10 @@ TEST_CASE("what is within the clearance of a vertex is the surface's own matter"
   const BallScene scene({{12, 12, 12, 9}});
   Mesh mesh;
   surface_around(mesh, {12, 12, 12, 6});
-  CHECK(find(mesh, scene, 4).count[kPart] == 0);
+  CHECK(find(mesh, scene, {4, kRadius}).count[kPart] == 0);
   // With less of it a shell is left over, which holds a small ball only.
-  CHECK(find(mesh, scene, 0.9F, 0.3F).count[kPart] == 1);
-  CHECK(find(mesh, scene, 0.9F, 1.2F).count[kPart] == 0);
+  CHECK(find(mesh, scene, {0.9F, 0.3F}).count[kPart] == 1);
+  CHECK(find(mesh, scene, {0.9F, 1.2F}).count[kPart] == 0);
 }
 
 TEST_CASE("places that hold no ball of the radius are left out, whatever their extent",
@@ -133,15 +134,43 @@ TEST_CASE("places that hold no ball of the radius are left out, whatever their e
   const BallScene scene({kMain, second});
   Mesh mesh;
   surface_around(mesh, kMain);
-  CHECK(find(mesh, scene, kClearance, 3).count[kPart] == 1);
-  CHECK(find(mesh, scene, kClearance, 5).count[kPart] == 0);
+  CHECK(find(mesh, scene, {kClearance, 3}).count[kPart] == 1);
+  CHECK(find(mesh, scene, {kClearance, 5}).count[kPart] == 0);
   // A sheet of one voxel, larger than the ball: nothing for 0.6, enough for 0.4.
   BallScene sheet({kMain});
   for (int32_t z = 2; z < 22; ++z) {
     for (int32_t y = 2; y < 22; ++y) sheet.at(30, y, z) = 1;
   }
-  CHECK(find(mesh, sheet, kClearance, 0.6F).count[kPart] == 0);
-  CHECK(find(mesh, sheet, kClearance, 0.4F).count[kPart] == 1);
+  CHECK(find(mesh, sheet, {kClearance, 0.6F}).count[kPart] == 0);
+  CHECK(find(mesh, sheet, {kClearance, 0.4F}).count[kPart] == 1);
+}
+
+TEST_CASE("what is thin of a place gets no bubble, but for what is beside its thick part",
+          "[missed_places]") {
+  // A ball with a fin of one voxel, where the image falls from 1 to 0: the iso-surface has sides 1
+  // voxel apart.
+  BallScene scene({kMain, {28, 12, 12, 4}});
+  for (int32_t z = 2; z < 22; ++z) {
+    for (int32_t y = 2; y < 22; ++y) scene.at(28, y, z) = 1;
+  }
+  Mesh mesh;
+  surface_around(mesh, kMain);
+  VoxelSet tried;
+  const MissedPlaces whole = find(mesh, scene, {kClearance, kRadius, 0.99F});
+  const MissedPlaces thick = find(mesh, scene, tried, {kClearance, kRadius, 1.8F});
+  CHECK(whole.is({28, 2, 2}, Missed::kPart));
+  CHECK(whole.low[kPart] == Voxel{24, 2, 2});
+  CHECK(whole.high[kPart] == Voxel{32, 21, 21});
+  REQUIRE(thick.count[kPart] == 1);
+  CHECK(thick.is({28, 12, 12}, Missed::kPart));
+  CHECK(thick.is({28, 8, 12}, Missed::kPart));
+  CHECK_FALSE(thick.is({28, 4, 12}, Missed::kPart));
+  CHECK(thick.low[kPart][1] > 5);
+  CHECK(thick.high[kPart][1] < 19);
+  // All of it has been tried.
+  CHECK(tried.has({28, 2, 2}));
+  // Nowhere as thick.
+  CHECK(find(mesh, scene, {kClearance, kRadius, 12}).count[kPart] == 0);
 }
 
 TEST_CASE("a ball between the voxels' centres fits as well as one about a centre",
@@ -155,8 +184,8 @@ TEST_CASE("a ball between the voxels' centres fits as well as one about a centre
   }
   Mesh mesh;
   surface_around(mesh, kMain);
-  CHECK(find(mesh, scene, kClearance, 0.99F).count[kPart] == 1);
-  CHECK(find(mesh, scene, kClearance, 1.01F).count[kPart] == 0);
+  CHECK(find(mesh, scene, {kClearance, 0.99F}).count[kPart] == 1);
+  CHECK(find(mesh, scene, {kClearance, 1.01F}).count[kPart] == 0);
 }
 
 TEST_CASE("parts that touch by a corner of a voxel are one, parts a voxel apart are two",
@@ -205,7 +234,7 @@ TEST_CASE("places left out for their size are not marked as tried", "[missed_pla
   Mesh mesh;
   surface_around(mesh, kMain);
   VoxelSet tried;
-  CHECK(find(mesh, scene, tried, kClearance, 6).count[kPart] == 0);
+  CHECK(find(mesh, scene, tried, {kClearance, 6}).count[kPart] == 0);
   CHECK(find(mesh, scene, tried).count[kPart] == 1);
 }
 
@@ -216,11 +245,11 @@ TEST_CASE("lengths are those of mesh space when voxels are not cubes", "[missed_
   Mesh mesh;
   surface_around(mesh, kMain);
   CHECK(find(mesh, fine).count == std::array<int64_t, 2>{1, 0});
-  CHECK(find(mesh, fine, kClearance, 3).count[kPart] == 1);
-  CHECK(find(mesh, fine, kClearance, 5).count[kPart] == 0);
+  CHECK(find(mesh, fine, {kClearance, 3}).count[kPart] == 1);
+  CHECK(find(mesh, fine, {kClearance, 5}).count[kPart] == 0);
   // Near in mesh units, though twelve voxels away.
   const BallScene grown({{10, 12, 12, 9}}, {1, 1, 3});
-  CHECK(find(mesh, grown, 4).count[kPart] == 0);
+  CHECK(find(mesh, grown, {4, kRadius}).count[kPart] == 0);
 }
 
 TEST_CASE("an object at the border is found, its ball must lie within the image",
@@ -231,7 +260,7 @@ TEST_CASE("an object at the border is found, its ball must lie within the image"
   CHECK(find(mesh, scene).count[kPart] == 1);
   CHECK(find(mesh, scene).high[kPart][0] == 39);
   const BallScene sliver({kMain, {42, 12, 12, 4}});  // 2 voxels deep at most
-  CHECK(find(mesh, sliver, kClearance, 1.6F).count[kPart] == 0);
+  CHECK(find(mesh, sliver, {kClearance, 1.6F}).count[kPart] == 0);
 }
 
 TEST_CASE("missed places are the same for any number of threads", "[missed_places]") {
@@ -245,7 +274,7 @@ TEST_CASE("missed places are the same for any number of threads", "[missed_place
     const plc::Schedule schedule(threads);
     VoxelSet marks;
     const MissedPlaces places =
-        plc::find_missed_places(mesh, {scene.view(), kIso, true}, kClearance, kRadius, schedule,
+        plc::find_missed_places(mesh, {scene.view(), kIso, true}, {kClearance, kRadius}, schedule,
                                 marks, plc::whole_room(scene.view()));
     CHECK(places.count == one.count);
     CHECK(places.low == one.low);
