@@ -51,21 +51,34 @@ struct StarSum {
   }
 };
 
-// The image's value for the vertices i .. i + kLanes - 1.
-template <class Voxel, bool kSized>
-HWY_INLINE Floats image_value_at(const SurfaceForces& f, const Float4* sizes, uint32_t i) {
-  const Floats own = sample<Voxel>(f.image, sampled_place<kSized>(f, i));
-  if constexpr (!kSized) return own;
+// What the means over the middles of edges add to the values of the vertices i .. i + kLanes - 1.
+template <class Voxel>
+HWY_INLINE Floats value_from_star(const SurfaceForces& f, const Float4* sizes, Floats own,
+                                  uint32_t i) {
   const FloatTag d;
   const Floats valence = load_valence(f.ring, i);
   const FloatMask in_columns = hn::Not(hn::Gt(valence, hn::Set(d, static_cast<float>(kRingSlots))));
   const Floats above = hn::Max(load_packed4(sizes + i).w, hn::Zero(d));
   const Floats part = hn::IfThenElseZero(hn::And(in_columns, hn::Gt(valence, hn::Zero(d))),
                                          hn::Min(above, hn::Set(d, f.star)));
-  if (hn::AllFalse(d, hn::Gt(part, hn::Zero(d)))) return own;
+  const FloatMask adds = hn::Gt(part, hn::Zero(d));
+  if (hn::AllFalse(d, adds)) return hn::Zero(d);
   StarSum<Voxel> star{f.image, load_packed(f.position + i)};
   walk_ring(f.ring, f.position, i, valence, star);
-  return lerp(own, hn::Mul(star.sum, inverse_valence(valence)), part);
+  const Floats mean = hn::Mul(star.sum, inverse_valence(valence));
+  return hn::IfThenElseZero(adds, hn::Mul(hn::Sub(mean, own), part));
+}
+
+// The image's value for the vertices i .. i + kLanes - 1.
+template <class Voxel, bool kSized, int kStage>
+HWY_INLINE Floats image_value_at(const SurfaceForces& f, const Float4* sizes, uint32_t i) {
+  const Floats own = sample<Voxel>(f.image, sampled_place<kSized>(f, i));
+  if constexpr (!kSized) return own;
+  const FloatTag d;
+  if constexpr (kStage == 0) {
+    hn::StoreU(value_from_star<Voxel>(f, sizes, own, i), d, f.from_star + i);
+  }
+  return hn::Add(own, hn::LoadU(d, f.from_star + i));
 }
 
 // (5) and (7) of the vertices i .. i + kLanes - 1.
@@ -148,7 +161,7 @@ HWY_INLINE void visit_blocks(const SurfaceForces& f, const Rk4Streams& s, const 
         }
         const uint32_t begin = blocks.begin(b);
         for (uint32_t i = 0; i < kRingLanes; i += kLanes) {
-          hn::Store(image_value_at<Voxel, kSized>(f, s.position, begin + i), FloatTag(),
+          hn::Store(image_value_at<Voxel, kSized, kStage>(f, s.position, begin + i), FloatTag(),
                     values + (b - first) * kRingLanes + i);
         }
       }
@@ -209,15 +222,17 @@ Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& f
                       : move_blocks<false>(coefficients, forces, streams, bound, ends, blocks);
 }
 
-void sized_iso_force(const SurfaceForces& f, const Float4* sizes, uint32_t begin, uint32_t end,
-                     Float3s force) {
+void sized_iso_force(int stage, const SurfaceForces& f, const Float4* sizes, uint32_t begin,
+                     uint32_t end, Float3s force) {
   const FloatTag d;
-  with_voxel_type(f.image.form.type, [&](auto voxel) HWY_ATTR {
-    for (uint32_t i = begin; i < end; i += kLanes) {
-      const Floats value = image_value_at<decltype(voxel), true>(f, sizes, i);
-      const Floats push = hn::Mul(hn::Set(d, f.attraction), hn::Sub(hn::Set(d, f.iso), value));
-      store3(load3(force, i) + load3(f.normal, i) * push, force, i);
-    }
+  with_stage(stage, [&](auto k) HWY_ATTR {
+    with_voxel_type(f.image.form.type, [&](auto voxel) HWY_ATTR {
+      for (uint32_t i = begin; i < end; i += kLanes) {
+        const Floats value = image_value_at<decltype(voxel), true, decltype(k)::value>(f, sizes, i);
+        const Floats push = hn::Mul(hn::Set(d, f.attraction), hn::Sub(hn::Set(d, f.iso), value));
+        store3(load3(force, i) + load3(f.normal, i) * push, force, i);
+      }
+    });
   });
 }
 
@@ -247,10 +262,10 @@ Movement guided_move(SimdTarget simd, const Rk4Coefficients& coefficients,
   return PLC_DISPATCH(simd, guided_move)(coefficients, forces, streams, bound, ends, blocks);
 }
 
-void sized_iso_force(SimdTarget simd, const SurfaceForces& forces, const Float4* sizes,
+void sized_iso_force(SimdTarget simd, int stage, const SurfaceForces& forces, const Float4* sizes,
                      uint32_t begin, uint32_t end, Float3s force) {
   const BrickReads reads(forces.image.bricks);
-  PLC_DISPATCH(simd, sized_iso_force)(forces, sizes, begin, end, force);
+  PLC_DISPATCH(simd, sized_iso_force)(stage, forces, sizes, begin, end, force);
 }
 
 }  // namespace plc::kernels

@@ -24,10 +24,13 @@ struct SurfaceForces {
   // An adaptive mesh: alpha_c is divided by the fourth power of sizes above delta, which keeps the
   // length that (5) smooths over. The image's value at a vertex is that at x + facets (L . n) n; of
   // one whose size is above delta the mean over the middles of its edges has the part min(size
-  // above delta / delta, star) in it, where the vertex has no more than kRingSlots neighbours.
+  // above delta / delta, star) in it, where the vertex has no more than kRingSlots neighbours. What
+  // that adds to the value at the start of a step holds for the step: stage 0 writes it, as what is
+  // sampled in between is near, and six times as much as the values themselves.
   bool sized = false;
   float facets = 0;
   float star = 0;
+  float* from_star = nullptr;  // per vertex
 };
 
 // Stages 0..2, and stage 3 where something else comes before the move.
@@ -42,7 +45,7 @@ Movement guided_move(SimdTarget simd, const Rk4Coefficients& coefficients,
 
 // Of forces with `sized`: f += attraction (iso - value) n, (7) alone. sizes: records whose w is the
 // size above delta. begin and end are multiples of kRingLanes.
-void sized_iso_force(SimdTarget simd, const SurfaceForces& forces, const Float4* sizes,
+void sized_iso_force(SimdTarget simd, int stage, const SurfaceForces& forces, const Float4* sizes,
                      uint32_t begin, uint32_t end, Float3s force);
 
 }  // namespace plc::kernels

@@ -98,8 +98,8 @@ void guided_stage(int stage, const Rk4Coefficients& coefficients, const SurfaceF
 Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& forces,
                      const Rk4Streams& streams, const MoveBound& bound, const MoveStreams& ends,
                      const Blocks& blocks);
-void sized_iso_force(const SurfaceForces& forces, const Float4* sizes, uint32_t begin, uint32_t end,
-                     Float3s force);
+void sized_iso_force(int stage, const SurfaceForces& forces, const Float4* sizes, uint32_t begin,
+                     uint32_t end, Float3s force);
 
 // nearby.h
 uint32_t near_or_turned(const NearbyView& view, const NearbyQuery& query, uint32_t* hits);

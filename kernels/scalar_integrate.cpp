@@ -103,38 +103,46 @@ Float4 sampled_place(const SurfaceForces& f, uint32_t i) {
   return {p.x + n.x * off, p.y + n.y * off, p.z + n.z * off, 0.0F};
 }
 
+// What the mean over the middles of its edges adds to the value of a vertex.
+float value_from_star(const SurfaceForces& f, const Float4* sizes, float own, uint32_t v) {
+  const uint32_t valence = f.ring.valence[v];
+  const float above = sizes[v].w > 0.0F ? sizes[v].w : 0.0F;
+  const float part = above < f.star ? above : f.star;
+  if (valence == 0 || valence > kRingSlots || !(part > 0.0F)) return 0;
+  Float4 middle[kRingSlots];
+  float value[kRingSlots];
+  for (uint32_t k = 0; k < valence; ++k) {
+    const Float4 &p = f.position[v], &q = f.position[f.ring.slot(v, k)];
+    middle[k] = {(p.x + q.x) * 0.5F, (p.y + q.y) * 0.5F, (p.z + q.z) * 0.5F, 0.0F};
+  }
+  sample_trilinear(f.image, middle, 0, valence, value);
+  float sum = 0;
+  for (uint32_t k = 0; k < valence; ++k) sum += value[k];
+  return (sum * (1.0F / static_cast<float>(valence)) - own) * part;
+}
+
 // The image's values for the vertices of a block.
-void block_values(const SurfaceForces& f, const Float4* sizes, uint32_t begin, float* values) {
+void block_values(int stage, const SurfaceForces& f, const Float4* sizes, uint32_t begin,
+                  float* values) {
   Float4 places[kRingLanes];
   for (uint32_t l = 0; l < kRingLanes; ++l) places[l] = sampled_place(f, begin + l);
   sample_trilinear(f.image, places, 0, kRingLanes, values);
   if (!f.sized) return;
   for (uint32_t l = 0; l < kRingLanes; ++l) {
-    const uint32_t v = begin + l, valence = f.ring.valence[v];
-    const float above = sizes[v].w > 0.0F ? sizes[v].w : 0.0F;
-    const float part = above < f.star ? above : f.star;
-    if (valence == 0 || valence > kRingSlots || !(part > 0.0F)) continue;
-    Float4 middle[kRingSlots];
-    float value[kRingSlots];
-    for (uint32_t k = 0; k < valence; ++k) {
-      const Float4 &p = f.position[v], &q = f.position[f.ring.slot(v, k)];
-      middle[k] = {(p.x + q.x) * 0.5F, (p.y + q.y) * 0.5F, (p.z + q.z) * 0.5F, 0.0F};
-    }
-    sample_trilinear(f.image, middle, 0, valence, value);
-    float sum = 0;
-    for (uint32_t k = 0; k < valence; ++k) sum += value[k];
-    values[l] = values[l] + (sum * (1.0F / static_cast<float>(valence)) - values[l]) * part;
+    float& from_star = f.from_star[begin + l];
+    if (stage == 0) from_star = value_from_star(f, sizes, values[l], begin + l);
+    values[l] = values[l] + from_star;
   }
 }
 
 // visit(vertex, its force) for every vertex of the blocks.
 template <typename Visit>
-void for_forces(const SurfaceForces& f, const Rk4Streams& s, const Blocks& blocks,
+void for_forces(int stage, const SurfaceForces& f, const Rk4Streams& s, const Blocks& blocks,
                 const Visit& visit) {
   for (size_t b = 0; b < blocks.count; ++b) {
     const uint32_t begin = blocks.begin(b);
     float values[kRingLanes];
-    block_values(f, s.position, begin, values);
+    block_values(stage, f, s.position, begin, values);
     for (uint32_t l = 0; l < kRingLanes; ++l) {
       visit(begin + l, surface_force(f, values[l], s.position[begin + l].w, begin + l));
     }
@@ -205,7 +213,7 @@ Movement move(const MoveBound& bound, const Float3s& moved, const ConstFloat3s& 
 
 void guided_stage(int stage, const Rk4Coefficients& coefficients, const SurfaceForces& forces,
                   const Rk4Streams& streams, const Blocks& blocks) {
-  for_forces(forces, streams, blocks, [&](uint32_t i, const Triple& force) {
+  for_forces(stage, forces, streams, blocks, [&](uint32_t i, const Triple& force) {
     advance_vertex(stage, coefficients, streams, force, i);
   });
 }
@@ -214,7 +222,7 @@ Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& f
                      const Rk4Streams& streams, const MoveBound& bound, const MoveStreams& ends,
                      const Blocks& blocks) {
   Sums sums;
-  for_forces(forces, streams, blocks, [&](uint32_t i, const Triple& force) {
+  for_forces(3, forces, streams, blocks, [&](uint32_t i, const Triple& force) {
     Rk4State end;
     rk4_vertex(3, coefficients, streams, force, i, end);
     move_vertex(bound, end.moved, end.rate, streams.moved, ends, i, sums);
@@ -222,11 +230,11 @@ Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& f
   return {add_lanes(sums.lane), sums.longest};
 }
 
-void sized_iso_force(const SurfaceForces& forces, const Float4* sizes, uint32_t begin, uint32_t end,
-                     Float3s force) {
+void sized_iso_force(int stage, const SurfaceForces& forces, const Float4* sizes, uint32_t begin,
+                     uint32_t end, Float3s force) {
   for (uint32_t first = begin; first < end; first += kRingLanes) {
     float values[kRingLanes];
-    block_values(forces, sizes, first, values);
+    block_values(stage, forces, sizes, first, values);
     for (uint32_t i = first; i < first + kRingLanes; ++i) {
       const float push = forces.attraction * (forces.iso - values[i - first]);
       const Triple n = times(at(forces.normal, i), push);

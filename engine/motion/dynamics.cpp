@@ -66,6 +66,7 @@ void Dynamics::resize(const Guide& guide) {
     b.reserve(room);
     b.resize(mesh_.position.size());
   }
+  if (mesh_.sizing != nullptr) from_star_.resize(n);
   if (!only_surface_forces(guide)) force_.resize(n);
   if (!stretched(guide.metric)) return;
   for (Streams3* s : {&metric_normal_, &metric_step_}) s->resize(n);
@@ -310,7 +311,7 @@ void Dynamics::image_forces(int stage, const Guide& guide, uint32_t begin, uint3
   const auto delta = static_cast<float>(mesh_.delta);
   if (model_.attraction != 0) {
     if (mesh_.sizing != nullptr) {
-      kernels::sized_iso_force(schedule_.simd(), surface_forces(stage, guide),
+      kernels::sized_iso_force(schedule_.simd(), stage, surface_forces(stage, guide),
                                mesh_.position.data(), begin, end, force);
     } else {
       kernels::iso_force(schedule_.simd(), guide.image, stage_position(stage),
@@ -346,7 +347,7 @@ kernels::Rk4Streams Dynamics::streams(int stage) {
           stage_[(stage + 1) % 2].data()};
 }
 
-kernels::SurfaceForces Dynamics::surface_forces(int stage, const Guide& guide) const {
+kernels::SurfaceForces Dynamics::surface_forces(int stage, const Guide& guide) {
   return {mesh_.rings(),
           laplacian_.data(),
           curvature(),
@@ -357,7 +358,8 @@ kernels::SurfaceForces Dynamics::surface_forces(int stage, const Guide& guide) c
           guide.iso,
           mesh_.sizing != nullptr,
           kFacets,
-          kStar};
+          kStar,
+          from_star_.data()};
 }
 
 // The last stage reads its positions from the other buffer.

@@ -53,6 +53,7 @@ float stable_time_step(const Model& model, float stiffness = 0);
 //   force      12     forces, per stage; only with other forces than curvature and image
 //   along      24     normals: unit normals of the metric and their steps; only with a metric
 //   user       12     user force, per stage; only where there is one
+//   from star  4      the first stage, of an adaptive mesh (guided_stage.h)
 //
 // 72 bytes per vertex in a run of curvature and image, and 4 per block of 16.
 class Dynamics {
@@ -113,7 +114,7 @@ class Dynamics {
   bool moves_at_once(const Guide& guide) const;
   kernels::Rk4Coefficients coefficients() const;
   kernels::Rk4Streams streams(int stage);
-  kernels::SurfaceForces surface_forces(int stage, const Guide& guide) const;
+  kernels::SurfaceForces surface_forces(int stage, const Guide& guide);
   kernels::MoveStreams move_streams();
   kernels::MoveBound move_bound() const;
   const Streams3& image_normal(const Guide& guide) const;
@@ -141,6 +142,7 @@ class Dynamics {
   Streams3 user_force_;
   Buffer<Float4> stage_[2];
   Buffer<Float4> laplacian_;
+  Buffer<float> from_star_;
 };
 
 }  // namespace plc
