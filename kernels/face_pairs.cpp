@@ -91,14 +91,15 @@ HWY_INLINE size_t pairs_of_leaves(const FaceBoxes& tree, uint32_t leaf, const Bo
   uint32_t near = overlapping(tree.leaves[leaf], other_box);
   if (tree.leaf_moved[other] == 0) near &= moved;
   if (near == 0) return 0;
-  const LeafCorners corners(tree.corners + size_t{3} * other * BoxLanes::kLanes);
   size_t found = 0;
   for (; near != 0; near &= near - 1) {
     const uint32_t k = lowest_bit(near), f = leaf * BoxLanes::kLanes + k;
-    uint32_t hits = overlapping(tree.leaves[other], tree.leaves[leaf].at(k)) &
-                    ~corners.sharing(tree.corners + size_t{3} * f);
+    uint32_t hits = overlapping(tree.leaves[other], tree.leaves[leaf].at(k));
     if ((moved >> k & 1) == 0) hits &= tree.leaf_moved[other];
     if (other == leaf) hits &= ~((2U << k) - 1);
+    if (hits == 0) continue;
+    const LeafCorners corners(tree.corners + size_t{3} * other * BoxLanes::kLanes);
+    hits &= ~corners.sharing(tree.corners + size_t{3} * f);
     for (; hits != 0; hits &= hits - 1) {
       pairs[found++] = {f, other * BoxLanes::kLanes + lowest_bit(hits)};
     }
