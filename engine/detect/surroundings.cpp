@@ -70,8 +70,8 @@ size_t Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash
   assert(due.empty() || due.back() < mesh_.slots());
   const float reach = wanted == Wanted::kNear ? kMinApart : kRiskReach;
   if (wanted == Wanted::kNearAndRisk) {
-    is_due_.resize(mesh_.slots());
-    for (const uint32_t v : due) is_due_[v] = 1;
+    is_due_.assign(mesh_.slots() / kBits + 1, 0);
+    for (const uint32_t v : due) is_due_[v / kBits] |= uint64_t{1} << v % kBits;
   }
   const size_t tasks = block_count(due.size(), kTaskVertices);
   tasks_.resize(std::max(tasks_.size(), tasks));
@@ -93,9 +93,6 @@ size_t Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash
       i += count;
     }
   });
-  if (wanted == Wanted::kNearAndRisk) {
-    for (const uint32_t v : due) is_due_[v] = 0;
-  }
   return tasks;
 }
 
@@ -216,7 +213,7 @@ void Surroundings::judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task
     if (too_near(v, w) && task.too_near.size() < most) {
       task.too_near.push_back({std::min(v, w), std::max(v, w)});
     }
-    if (w < v && is_due_[w] != 0) continue;  // w has looked at v
+    if (w < v && is_due(w)) continue;  // w has looked at v
     const float far = kRiskReach * mesh_.stretch * std::max(mesh_.size(v), mesh_.size(w));
     if (dot(n, sheet_normal(w)) <= kRiskDot && squared_distance(p, mesh_.at(w)) <= far * far)
       scratch.turned.push_back(w);

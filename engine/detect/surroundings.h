@@ -63,6 +63,7 @@ class Surroundings {
     Vector<uint32_t> turned;
   };
   enum class Wanted { kNear, kNearAndRisk };
+  static constexpr uint32_t kBits = 64;
   // Fills the tasks; returns how many.
   size_t search(const Vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted);
   void gather_near(size_t tasks);
@@ -71,6 +72,7 @@ class Surroundings {
   void fetch(Wanted wanted, Scratch& scratch) const;
   void search_group(const uint32_t* due, size_t count, Wanted wanted, Scratch& scratch,
                     Task& task) const;
+  bool is_due(uint32_t v) const { return (is_due_[v / kBits] >> v % kBits & 1) != 0; }
   bool too_near(uint32_t v, uint32_t w) const;
   void list_near(uint32_t v, uint32_t hits, const Scratch& scratch, Task& task) const;
   void judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task) const;
@@ -83,7 +85,7 @@ class Surroundings {
   const VertexBytes* risk_ = nullptr;  // of this search
   Vector<Task> tasks_;
   Spares<Scratch> scratches_;
-  Vector<uint8_t> is_due_;  // in this search; by vertex
+  Vector<uint64_t> is_due_;  // a bit per vertex: in this search
   Vector<VertexPair> too_near_;
   Vector<uint32_t> at_risk_;
 };
