@@ -161,7 +161,9 @@ inline constexpr double kTinyVolume = 0.5;
 // no such ball has sheets that are nearer than (3) allows.
 inline constexpr float kSmallestBubble = 1.15F;
 // Sheets of a place that are thinner, in delta, start without a bubble where the mesh is uniform:
-// nearly all of theirs would be cut away by (3) before the first iteration, vertex by vertex.
+// most of it would be cut away by (3) again, operation by operation. From 1.44, which is (3),
+// to 1.8 mean distances to the results of head CT, Iguana and bonsai are those of whole places
+// within 3 %; at 2.3 that of the head CT is a third larger.
 inline constexpr float kThinSheet = 1.8F;
 // Room between a bubble and the vertices of the rest, in delta: (3) and a little. No point of a
 // face is this far from its corners.

@@ -54,8 +54,8 @@ class Risk {
   // valence of v <= kRiskRing.
   Risk(const Mesh& mesh, uint32_t v);
   // False when planes that have kRiskGap room lie between the faces of v and those of w, but for
-  // pairs of faces with a common vertex. v and w are not neighbours. What is said of v and w holds
-  // of w and v, too.
+  // pairs of faces with a common vertex. v and w are not neighbours. What is said of v and w is
+  // good for w and v, too: the room is that of the larger of both.
   bool may_meet(uint32_t w) const;
 
  private:

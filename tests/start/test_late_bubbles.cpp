@@ -85,6 +85,34 @@ void fill_box(BallScene& scene, std::array<int32_t, 3> low, std::array<int32_t, 
 
 }  // namespace
 
+TEST_CASE("a bubble leaves out the sheets of its place that are thinner than kThinSheet",
+          "[late_bubbles]") {
+  // A fin whose sides are 1 / (1 - v) voxels apart: more than (3) asks for, at 1.2.
+  for (const float v : {0.25F, 0.4F}) {
+    BallScene scene({kMain, {28, 12, 12, 4}});
+    for (const int32_t x : {27, 28, 29}) {
+      for (int32_t z = 2; z < 22; ++z) {
+        for (int32_t y = 2; y < 22; ++y) {
+          float& value = scene.at(x, y, z);
+          value = std::max(value, x == 28 ? 1 : v);
+        }
+      }
+    }
+    Mesh mesh;
+    surface_around(mesh, kMain);
+    const uint32_t old = mesh.slots();
+    REQUIRE(start(mesh, scene).bubbles == 1);
+    float farthest = 0;
+    for (uint32_t u = old; u < mesh.slots(); ++u) {
+      farthest = std::max(farthest, std::abs(mesh.at(u).y - 12));
+    }
+    const bool thin = 1 / (1 - v) < plc::kThinSheet * static_cast<float>(kDelta);
+    CAPTURE(v);
+    CHECK(thin == (v < 0.3F));
+    CHECK((farthest < 8) == thin);
+  }
+}
+
 TEST_CASE("where nothing is missed the mesh stays as it is", "[late_bubbles]") {
   const BallScene scene({kMain});
   Mesh mesh;
