@@ -22,8 +22,8 @@ eval "$export_line"
 works "an image" 0 "$pellicle" phantom chain --size 60,60,1760 --spacing 1,1,0.04 --type u8 -o chain.ome.zarr
 works "a plan" 0 "$pellicle" blocks plan chain.ome.zarr --iso 127 -o plan \
   --side 84 --from-level 0 --reduction 1.2 --levels 8
-# Tasks that take long enough to be met: they do not come to rest.
-jq '.parameters.epsilon = [1e-300] | .parameters.sleeping = [0] | .parameters.max_iterations = [500]' \
+# Tasks that take long enough to be met, the sixth most of all: they do not come to rest.
+jq '.parameters.epsilon = [1e-300] | .parameters.sleeping = [0] | .parameters.max_iterations = [1000]' \
   plan/plan.json >slow.json
 mv slow.json plan/plan.json
 cp -r plan here
@@ -49,8 +49,8 @@ submit "submit"
 says "submit" '^#SBATCH --mem=200M$' stdout
 says "submit" '^#SBATCH --time=4$' stdout
 says "submit" '^#SBATCH --comment=made-up$' stdout
-task_pid() { pgrep -f "blocks run $here/plan " | head -n 1; }
-killed() {  # one that has been at work for a while
+task_pid() { pgrep -f "blocks run $here/plan --step=0 --task=6/10" | head -n 1; }
+killed() {  # that with most to do, which has been at work for a while and is not near its end
   local pid
   pid=$(task_pid)
   [ -n "$pid" ] && sleep 0.3 && kill -9 "$pid" 2>/dev/null
