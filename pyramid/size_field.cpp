@@ -84,14 +84,13 @@ class Tile {
   }
 
   // first: its first voxel.
-  void read(const ImageView& image, const std::array<int32_t, 3>& first) {
+  void read(const ImageView& image, int32_t padding, const std::array<int32_t, 3>& first) {
     const auto within = [&](int32_t i, size_t a) {
       return std::clamp(first[a] - kHalo + i, 0, image.dims[a] - 1);
     };
     for (size_t a = 0; a < 3; ++a) {
-      const int32_t begin = image.form.pad - first[a] + kHalo;
-      stored_[a] = {std::max(begin, 0),
-                    std::min(begin + image.dims[a] - 2 * image.form.pad, kSide)};
+      const int32_t begin = padding - first[a] + kHalo;
+      measured_[a] = {std::max(begin, 0), std::min(begin + image.dims[a] - 2 * padding, kSide)};
     }
     float* to = value_.data();
     with_voxel_type(image.form.type, [&](auto voxel) {
@@ -126,8 +125,8 @@ class Tile {
     convolve(tensor_[0], kRow, kSecond, scratch_);
     convolve(scratch_, kPlane, kSecond, tensor_[0]);
     magnitudes_.clear();
-    // What is repeated beyond the image's border has no noise.
-    const auto& [xs, ys, zs] = stored_;
+    // What is padding, or repeated beyond the image's border, has no noise.
+    const auto& [xs, ys, zs] = measured_;
     for (int32_t z = zs.first + 1; z < zs.second - 1; ++z) {
       for (int32_t y = ys.first + 1; y < ys.second - 1; ++y) {
         const float* row =
@@ -186,7 +185,7 @@ class Tile {
   }
 
  private:
-  std::array<std::pair<int32_t, int32_t>, 3> stored_{};  // begin and end of what the image holds
+  std::array<std::pair<int32_t, int32_t>, 3> measured_{};  // begin and end of what is no padding
   Vector<float> value_, scratch_, magnitudes_;
   std::array<Vector<float>, 6> tensor_;
   Vector<float> weight_;
@@ -201,9 +200,11 @@ uint8_t code(double size) {
 // Of the tiles that the iso-surface passes through.
 class SizeField::Builder {
  public:
-  Builder(SizeField& field, const ImageView& image, float iso, double delta, const SizeSpec& spec)
+  Builder(SizeField& field, const ImageView& image, int32_t padding, float iso, double delta,
+          const SizeSpec& spec)
       : field_(field),
         image_(image),
+        padding_(padding),
         iso_(iso),
         finest_(code(spec.finest)),
         coarsest_(code(spec.coarsest)) {
@@ -226,8 +227,9 @@ class SizeField::Builder {
         for (int32_t x = 0; x < tiles_[0]; ++x) {
           const std::array<int32_t, 3> cell{x * kTile, y * kTile, static_cast<int32_t>(z) * kTile};
           const auto& first = field_.first_;
-          tile.read(image_, {(first[0] + cell[0]) * kCell, (first[1] + cell[1]) * kCell,
-                             (first[2] + cell[2]) * kCell});
+          tile.read(image_, padding_,
+                    {(first[0] + cell[0]) * kCell, (first[1] + cell[1]) * kCell,
+                     (first[2] + cell[2]) * kCell});
           if (!tile.crosses(iso_)) continue;
           const double noise = tile.noise();
           tile.find_tensors(half_, iso_);
@@ -284,6 +286,7 @@ class SizeField::Builder {
 
   SizeField& field_;
   const ImageView& image_;
+  int32_t padding_;
   float iso_;
   uint8_t finest_, coarsest_;
   std::array<int32_t, 3> tiles_{};
@@ -293,7 +296,7 @@ class SizeField::Builder {
 };
 
 Status SizeField::build(const ImageView& image, float iso, double delta, const SizeSpec& spec,
-                        const Executor& executor, const VoxelRoom& room) {
+                        const Executor& executor, int32_t padding, const VoxelRoom& room) {
   double side = 1e30;  // of a cell, in delta
   size_t count = 1;
   for (size_t a = 0; a < 3; ++a) {
@@ -313,9 +316,9 @@ Status SizeField::build(const ImageView& image, float iso, double delta, const S
   coarsest_ = static_cast<float>(code(spec.coarsest)) * kStep;
   try {
     sizes_.resize_uninitialized(count);
-    Builder(*this, image, iso, delta, spec).run(executor);
+    Builder(*this, image, padding, iso, delta, spec).run(executor);
   } catch (const std::bad_alloc&) {
-    return {ErrorCode::kOutOfMemory, "sizes of an adaptive mesh: out of memory"};
+    return {ErrorCode::kOutOfMemory, "sizes of an adaptive mesh, of which a uniform one has none: out of memory"};
   }
   // To the next cube by a face, an edge, a corner.
   std::array<int, 4> steps{};

@@ -36,13 +36,14 @@ class SizeField {
 
   // image: of the level, its scale and offset those of mesh space. delta: in mesh units. The same
   // bits for any executor. Where the iso-surface is not near, sizes are the coarsest that the slope
-  // allows. room: what alone is looked at and has sizes of its own, with up to 15 voxels around
-  // it. Errors: kOutOfMemory.
+  // allows. padding: voxels on each side that nobody measured, which have no noise. room: what
+  // alone is looked at and has sizes of its own, with up to 15 voxels around it. Errors:
+  // kOutOfMemory.
   Status build(const ImageView& image, float iso, double delta, const SizeSpec& spec,
-               const Executor& executor, const VoxelRoom& room);
+               const Executor& executor, int32_t padding, const VoxelRoom& room);
   Status build(const ImageView& image, float iso, double delta, const SizeSpec& spec,
                const Executor& executor) {
-    return build(image, iso, delta, spec, executor, whole_room(image));
+    return build(image, iso, delta, spec, executor, image.form.pad, whole_room(image));
   }
 
   // By how much the size at a place of mesh space is above delta, in delta: what a mesh keeps with

@@ -59,10 +59,7 @@ Status Run::restore(const uint8_t* state, size_t size) {
   if (fingerprint_there != fingerprint()) {
     return refuse("of another image, other parameters or other extras");
   }
-  return guard([&]() -> Status {
-    if (!recovery_->restore(from) || !from.at_end()) return refuse("altered");
-    return {};
-  });
+  return guard([&] { return recovery_->restore(from); });
 }
 
 }  // namespace plc

@@ -273,8 +273,8 @@ Status Recovery::build_sizing() {
     room.low[a] = std::max(0, room.low[a] - voxels);
     room.high[a] = std::min(guide_.image.dims[a] - 1, room.high[a] + voxels);
   }
-  if (Status s =
-          sizing_.field.build(guide_.image, *iso, mesh_.delta, *spec_.sizes, schedule_, room);
+  if (Status s = sizing_.field.build(guide_.image, *iso, mesh_.delta, *spec_.sizes, schedule_,
+                                     level_ == 0 ? spec_.pad_voxels : 0, room);
       !s.ok()) {
     return s;
   }
@@ -439,6 +439,7 @@ Status Recovery::leave_level() {
   phase_ = Phase::kStart;
   if (done_) {
     progress_.fraction = 1;
+    progress_.vertices = mesh_.vertex_count();
     if (!mesh_.in_order()) renumber();
   } else {
     --level_;

@@ -127,10 +127,10 @@ class Recovery {
 
   // save() writes the state between two calls: mesh and records, but not the pyramid, the spec and
   // the hooks. restore() is called instead of start() on a recovery with an equal pyramid and spec,
-  // which then goes on with the same bits. It returns false where what it reads is no such state;
-  // the recovery cannot be used then.
+  // which then goes on with the same bits. Errors, after which it cannot be used: kInvalidData, what
+  // it reads is no such state; kOutOfMemory.
   void save(StateWriter& to) const;
-  bool restore(StateReader& from);
+  Status restore(StateReader& from);
 
  private:
   enum class Phase : uint8_t { kStart, kIterate, kCheck, kVerify, kRoundEnd, kVerdict };
@@ -174,7 +174,8 @@ class Recovery {
   Status add_late_bubbles(bool& added);
   Status report_progress() const;  // of the last iteration, to the user
   bool confirmed(int calm);
-  bool restore_tried(StateReader& from);
+  bool read(StateReader& from);
+  bool read_tried(StateReader& from);
   void renumber();
   void renumber_if_scattered();
   void estimate_progress();

@@ -72,26 +72,33 @@ void Recovery::save(StateWriter& to) const {
   evolution_.save(to);
 }
 
-bool Recovery::restore(StateReader& from) {
+Status Recovery::restore(StateReader& from) {
+  if (!read(from) || !from.at_end()) return {ErrorCode::kInvalidData, "state: altered"};
+  if (phase_ == Phase::kStart) return {};
+  if (Status s = build_gradient_image(); !s.ok()) return s;
+  return build_sizing();
+}
+
+bool Recovery::read(StateReader& from) {
   // Every whole number counts something: none is negative, or so large that counting on overflows.
-  const auto read = [&](auto& value) {
+  const auto number = [&](auto& value) {
     from.read(value);
     using T = std::remove_reference_t<decltype(value)>;
     if constexpr (std::is_integral_v<T> && std::is_signed_v<T>) {
       from.demand(value >= 0 && value <= std::numeric_limits<T>::max() / 2);
     }
   };
-  read(level_);
-  read(entered_);
+  number(level_);
+  number(entered_);
   from.read(phase_, Phase::kVerdict);
-  read(done_);
-  read(energy_);
-  visit_round(round_, read);
-  read(late_iterations_);
-  visit_progress(progress_, read);
-  ProgressEstimate::visit_fields(estimate_, read);
+  number(done_);
+  number(energy_);
+  visit_round(round_, number);
+  number(late_iterations_);
+  visit_progress(progress_, number);
+  ProgressEstimate::visit_fields(estimate_, number);
   uint32_t records = 0;
-  read(records);
+  number(records);
   // Between two levels the next one has no record yet.
   const int next = phase_ == Phase::kStart && !done_ ? 1 : 0;
   from.demand(level_ >= 0 && level_ <= levels_ && entered_ == level_ + next &&
@@ -99,12 +106,12 @@ bool Recovery::restore(StateReader& from) {
   if (!from.ok()) return false;
   records_.resize(records);
   for (LevelRecord& r : records_) {
-    visit_record(r, read);
+    visit_record(r, number);
     from.demand(r.level == levels_ - static_cast<int>(&r - records_.data()));
   }
   mesh_.clear();
   enter(entered_);
-  if (!restore_tried(from) || !mesh_.restore(from)) return false;
+  if (!read_tried(from) || !mesh_.restore(from)) return false;
   if (mesh_.vertex_count() != 0 && mesh_.delta != delta_of(entered_)) return false;
   if ((done_ || phase_ == Phase::kVerdict) && !mesh_.in_order()) return false;
   evolution_.restore(from);
@@ -113,12 +120,10 @@ bool Recovery::restore(StateReader& from) {
   if (Obstacles::Meeting meeting; obstacles_ && obstacles_->find_meeting(mesh_, meeting)) {
     return false;
   }
-  if (phase_ != Phase::kStart && !(build_gradient_image().ok() && build_sizing().ok()))
-    return false;
   return spec_.sizes || mesh_.uniform();
 }
 
-bool Recovery::restore_tried(StateReader& from) {
+bool Recovery::read_tried(StateReader& from) {
   bool has_image = false;
   from.read(has_image);
   tried_ = has_image ? VoxelSet(guide_.image.dims) : VoxelSet();

@@ -132,7 +132,7 @@ TEST_CASE("an adaptive run that is saved and restored goes on with the same bits
   plc::Recovery restored(samples::pyramid_of(run), run.recovery, schedule, {}, again,
                          records_again);
   plc::StateReader reader(bytes.data(), bytes.size());
-  REQUIRE(restored.restore(reader));
+  REQUIRE(restored.restore(reader).ok());
   REQUIRE(whole.advance(plc::Amount::kAll).message() == "");
   REQUIRE(restored.advance(plc::Amount::kAll).message() == "");
   CHECK(plc::state_hash(mesh) == plc::state_hash(again));
