@@ -318,32 +318,73 @@ Status SizeField::build(const ImageView& image, float iso, double delta, const S
     sizes_.resize_uninitialized(count);
     Builder(*this, image, padding, iso, delta, spec).run(executor);
   } catch (const std::bad_alloc&) {
-    return {ErrorCode::kOutOfMemory, "sizes of an adaptive mesh, of which a uniform one has none: out of memory"};
+    return {ErrorCode::kOutOfMemory,
+            "sizes of an adaptive mesh, of which a uniform one has none: out of memory"};
   }
-  // To the next cube by a face, an edge, a corner.
-  std::array<int, 4> steps{};
   constexpr std::array<double, 4> kAway{0, 1, 1.414, 1.732};
   for (size_t k = 1; k < 4; ++k) {
-    steps[k] =
+    steps_[k] =
         std::max(1, static_cast<int>(spec.slope * side * kAway[k] / static_cast<double>(kStep)));
   }
-  bound_slope(steps);
+  for (size_t a = 0; a < 3; ++a) {
+    low_[a] = 0;
+    high_[a] = cells_[a] - 1;
+  }
+  bound_slope();
   return {};
 }
 
-// Chamfer distances: forth and back.
-void SizeField::bound_slope(const std::array<int, 4>& steps) {
-  sweep(steps, 1);
-  sweep(steps, -1);
+void SizeField::lower(const std::array<int32_t, 3>& voxel, float most) {
+  const uint8_t least = code(static_cast<double>(most));
+  std::array<int32_t, 3> low, high;
+  for (size_t a = 0; a < 3; ++a) {
+    const int32_t cell = voxel[a] / kCell - first_[a];
+    if (cell < 0 || cell >= cells_[a]) return;
+    low[a] = std::max(cell - 1, 0);
+    high[a] = std::min(cell + 1, cells_[a] - 1);
+    low_[a] = std::min(low_[a], low[a]);
+    high_[a] = std::max(high_[a], high[a]);
+  }
+  for (int32_t z = low[2]; z <= high[2]; ++z) {
+    for (int32_t y = low[1]; y <= high[1]; ++y) {
+      const size_t row =
+          (static_cast<size_t>(z) * static_cast<size_t>(cells_[1]) + static_cast<size_t>(y)) *
+          static_cast<size_t>(cells_[0]);
+      for (int32_t x = low[0]; x <= high[0]; ++x) {
+        uint8_t& own = sizes_[row + static_cast<size_t>(x)];
+        own = std::min(own, least);
+      }
+    }
+  }
 }
 
-// Every cell from those before it in this direction.
-void SizeField::sweep(const std::array<int, 4>& steps, int direction) {
+// Chamfer distances, forth and back, as far as what was lowered reaches. A shortest way of steps
+// that all go the same way on each axis stays within the box of its ends, and may take its steps of
+// the first sweep first: so two sweeps give the least over all ways.
+void SizeField::bound_slope() {
+  if (low_[0] > high_[0]) return;
+  const auto reach = static_cast<int32_t>(coarsest_ / kStep) / steps_[1] + 1;
+  for (size_t a = 0; a < 3; ++a) {
+    low_[a] = std::max(low_[a] - reach, 0);
+    high_[a] = std::min(high_[a] + reach, cells_[a] - 1);
+  }
+  sweep(1);
+  sweep(-1);
+  low_ = cells_;
+  high_ = {-1, -1, -1};
+}
+
+// Every cell of the box from those before it in this direction.
+void SizeField::sweep(int direction) {
   const int64_t nx = cells_[0], ny = cells_[1], nz = cells_[2];
-  const auto in_turn = [direction](int64_t k, int64_t n) { return direction > 0 ? k : n - 1 - k; };
-  for (int64_t k = 0; k < nx * ny * nz; ++k) {
-    const int64_t x = in_turn(k % nx, nx), y = in_turn(k / nx % ny, ny);
-    const int64_t z = in_turn(k / (nx * ny), nz);
+  std::array<int64_t, 3> n{};
+  for (size_t a = 0; a < 3; ++a) n[a] = std::max(high_[a] - low_[a] + 1, 0);
+  const auto in_turn = [&](int64_t k, size_t a) {
+    return direction > 0 ? low_[a] + k : high_[a] - k;
+  };
+  for (int64_t k = 0; k < n[0] * n[1] * n[2]; ++k) {
+    const int64_t x = in_turn(k % n[0], 0), y = in_turn(k / n[0] % n[1], 1);
+    const int64_t z = in_turn(k / (n[0] * n[1]), 2);
     uint8_t& own = sizes_[static_cast<size_t>((z * ny + y) * nx + x)];
     int least = own;
     for (int dz = -1; dz <= 0; ++dz) {
@@ -352,7 +393,8 @@ void SizeField::sweep(const std::array<int, 4>& steps, int direction) {
           const int64_t u = x + direction * dx, v = y + direction * dy, w = z + direction * dz;
           if (u < 0 || v < 0 || w < 0 || u >= nx || v >= ny || w >= nz) continue;
           const auto away = static_cast<size_t>((dx != 0) + (dy != 0) + (dz != 0));
-          least = std::min(least, sizes_[static_cast<size_t>((w * ny + v) * nx + u)] + steps[away]);
+          least =
+              std::min(least, sizes_[static_cast<size_t>((w * ny + v) * nx + u)] + steps_[away]);
         }
       }
     }

@@ -26,8 +26,8 @@ struct SizeSpec {
   double slope = 0.1;  // by how much sizes grow with the distance, at most
 };
 
-// Sizes of cubes of voxels: a byte each, in steps of 1/32 delta. Immutable once built; read by any
-// thread.
+// Sizes of cubes of voxels: a byte each, in steps of 1/32 delta. Read by any thread, but for while
+// they are built or lowered.
 class SizeField {
  public:
   static constexpr float kStep = 1.0F / 32;
@@ -46,6 +46,12 @@ class SizeField {
     return build(image, iso, delta, spec, executor, image.form.pad, whole_room(image));
   }
 
+  // In the cube of a voxel of the image, and in those beside it, sizes become `most` delta or less.
+  // bound_slope() brings those around them back within the slope: what comes out depends on all
+  // voxels that were lowered, not on their order nor on how often it was called.
+  void lower(const std::array<int32_t, 3>& voxel, float most);
+  void bound_slope();
+
   // By how much the size at a place of mesh space is above delta, in delta: what a mesh keeps with
   // its vertices. Trilinear between the centres of the cubes; beyond the image that of its border.
   float above_delta(float x, float y, float z) const;
@@ -61,14 +67,15 @@ class SizeField {
 
  private:
   class Builder;
-  void bound_slope(const std::array<int, 4>& steps);
-  void sweep(const std::array<int, 4>& steps, int direction);
+  void sweep(int direction);
 
   std::array<int32_t, 3> first_{0, 0, 0};  // cell of the image
   std::array<int32_t, 3> cells_{0, 0, 0};
   std::array<float, 3> scale_{1, 1, 1}, offset_{0, 0, 0};  // mesh space to cells
   float slope_ = 0, finest_ = 1, coarsest_ = 1, noise_ = 0;
   Buffer<uint8_t> sizes_;
+  std::array<int, 4> steps_{};  // of codes, to the next cube: itself, by a face, an edge, a corner
+  std::array<int32_t, 3> low_{}, high_{};  // cells that were lowered; low > high: none
 };
 
 }  // namespace plc

@@ -168,6 +168,13 @@ inline constexpr float kThinSheet = 1.8F;
 // Room between a bubble and the vertices of the rest, in delta: (3) and a little. No point of a
 // face is this far from its corners.
 inline constexpr float kBubbleGap = 1.5F;
+// Where a place gets a bubble, and where the surface bends though the image does not, sizes of an
+// adaptive mesh are at most this, in delta: the border of a hole in a plate is nothing of the
+// image's, by which its edges would be long.
+inline constexpr float kLateSize = 1.25F;
+// Cosine of 60 degrees, by which a face turns from the normal at its corner where the surface
+// bends.
+inline constexpr float kFoldCosine = 0.5F;
 // Places of so many voxels get a bubble in an adaptive mesh, however thin they are.
 inline constexpr int64_t kPlaceVoxels = 27;
 // What still moves is not missed yet: a surface is searched when its energy is below this many

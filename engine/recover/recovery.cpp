@@ -10,6 +10,7 @@
 #include "engine/recover/cost.h"
 #include "engine/recover/frozen_sites.h"
 #include "engine/resolve/refinement.h"
+#include "engine/start/folds.h"
 #include "pyramid/gradient.h"
 
 namespace plc {
@@ -111,9 +112,10 @@ Status Recovery::start_level() {
   }
   if (mesh_.vertex_count() == 0 && !mesh_.is_patch()) return leave_level();
   estimate_.start_level();
+  tried_ = VoxelSet();
+  folds_ = VoxelSet();
   if (Status s = adapt(); !s.ok()) return s;
   if (Status s = build_gradient_image(); !s.ok()) return s;
-  tried_ = VoxelSet();
   bool added = false;
   if (!fresh || mesh_.is_patch()) {
     if (Status s = add_late_bubbles(added); !s.ok()) return s;
@@ -281,7 +283,16 @@ Status Recovery::build_sizing() {
   mesh_.sizing = &sizing_;
   mesh_.stretch = kSizedStretch;
   mesh_.longest_edge = mesh_.longest_sized_edge();
+  lower_sizes();
   return {};
+}
+
+// To those of late bubbles and folds, where the level has had some.
+void Recovery::lower_sizes() {
+  for (const VoxelSet* voxels : {&tried_, &folds_}) {
+    voxels->visit([&](const Voxel& voxel) { sizing_.field.lower(voxel, kLateSize); });
+  }
+  sizing_.field.bound_slope();
 }
 
 void Recovery::start_round(int number, bool late) {
@@ -466,7 +477,8 @@ bool Recovery::confirmed(int calm) {
   return false;
 }
 
-// Starts bubbles in what the surface has missed; `added` becomes whether there was anything.
+// Starts bubbles in what the surface has missed, and makes an adaptive mesh fine where they are and
+// where it is folded; `added` becomes whether there was anything.
 Status Recovery::add_late_bubbles(bool& added) {
   added = false;
   const bool at_rest = mesh_.vertex_count() == 0 || energy_ <= kLateEnergy * spec_.epsilon;
@@ -475,8 +487,13 @@ Status Recovery::add_late_bubbles(bool& added) {
   const double start = now();
   const uint32_t before = mesh_.vertex_count();
   LateBubbles late;
-  if (Status s = start_late_bubbles({guide_.image, *iso, spec_.inside_above}, schedule_, mesh_,
-                                    tried_, late, record().operations, voxel_room());
+  const ImageObject object{guide_.image, *iso, spec_.inside_above};
+  const MissedPlaces places = find_late_places(mesh_, object, schedule_, tried_, voxel_room());
+  const bool adaptive = mesh_.sizing != nullptr;
+  const bool folded = adaptive && find_folds(mesh_, guide_.image, folds_);
+  const bool lowered = folded || (adaptive && places.count != std::array<int64_t, 2>{0, 0});
+  if (lowered) lower_sizes();
+  if (Status s = start_late_bubbles(object, places, schedule_, mesh_, late, record().operations);
       !s.ok()) {
     return s;
   }
@@ -486,8 +503,12 @@ Status Recovery::add_late_bubbles(bool& added) {
   record().late.cavities += late.cavities;
   record().late.volume += late.volume * static_cast<double>(mm[0]) * static_cast<double>(mm[1]) *
                           static_cast<double>(mm[2]);
-  added = mesh_.vertex_count() != before;
+  added = folded || mesh_.vertex_count() != before;
   if (added) {
+    for (uint32_t v = 0; lowered && v < mesh_.slots(); ++v) {
+      if (mesh_.alive(v)) mesh_.resize(v);
+      mesh_.wake(v);
+    }
     renumber();
     evolution_.restart();
   }

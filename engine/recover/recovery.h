@@ -127,8 +127,8 @@ class Recovery {
 
   // save() writes the state between two calls: mesh and records, but not the pyramid, the spec and
   // the hooks. restore() is called instead of start() on a recovery with an equal pyramid and spec,
-  // which then goes on with the same bits. Errors, after which it cannot be used: kInvalidData, what
-  // it reads is no such state; kOutOfMemory.
+  // which then goes on with the same bits. Errors, after which it cannot be used: kInvalidData,
+  // what it reads is no such state; kOutOfMemory.
   void save(StateWriter& to) const;
   Status restore(StateReader& from);
 
@@ -160,6 +160,7 @@ class Recovery {
   VoxelRoom voxel_room() const;
   Status build_gradient_image();
   Status build_sizing();
+  void lower_sizes();
   Status adapt();
   void start_round(int number, bool late);
   int iterations_left() const;  // of the round
@@ -175,7 +176,7 @@ class Recovery {
   Status report_progress() const;  // of the last iteration, to the user
   bool confirmed(int calm);
   bool read(StateReader& from);
-  bool read_tried(StateReader& from);
+  bool read_set(StateReader& from, VoxelSet& voxels) const;
   void renumber();
   void renumber_if_scattered();
   void estimate_progress();
@@ -210,6 +211,7 @@ class Recovery {
   std::optional<Obstacles> obstacles_;
   Buffer<Float4> gradient_;  // of the level
   VoxelSet tried_;           // voxels of the level's late bubbles
+  VoxelSet folds_;           // ... of its folds (folds.h)
   double energy_ = 0;        // of the last iteration on any level
   RecoveryProgress progress_{};
   ProgressEstimate estimate_;

@@ -66,8 +66,10 @@ void Recovery::save(StateWriter& to) const {
   ProgressEstimate::visit_fields(estimate_, add);
   add(static_cast<uint32_t>(records_.size()));
   for (const LevelRecord& r : records_) visit_record(r, add);
-  add(tried_.has_image());
-  if (tried_.has_image()) tried_.save(to);
+  for (const VoxelSet* voxels : {&tried_, &folds_}) {
+    add(voxels->has_image());
+    if (voxels->has_image()) voxels->save(to);
+  }
   mesh_.save(to);
   evolution_.save(to);
 }
@@ -111,7 +113,7 @@ bool Recovery::read(StateReader& from) {
   }
   mesh_.clear();
   enter(entered_);
-  if (!read_tried(from) || !mesh_.restore(from)) return false;
+  if (!read_set(from, tried_) || !read_set(from, folds_) || !mesh_.restore(from)) return false;
   if (mesh_.vertex_count() != 0 && mesh_.delta != delta_of(entered_)) return false;
   if ((done_ || phase_ == Phase::kVerdict) && !mesh_.in_order()) return false;
   evolution_.restore(from);
@@ -123,11 +125,11 @@ bool Recovery::read(StateReader& from) {
   return spec_.sizes || mesh_.uniform();
 }
 
-bool Recovery::read_tried(StateReader& from) {
+bool Recovery::read_set(StateReader& from, VoxelSet& voxels) const {
   bool has_image = false;
   from.read(has_image);
-  tried_ = has_image ? VoxelSet(guide_.image.dims) : VoxelSet();
-  if (has_image) tried_.restore(from);
+  voxels = has_image ? VoxelSet(guide_.image.dims) : VoxelSet();
+  if (has_image) voxels.restore(from);
   return from.ok();
 }
 

@@ -9,7 +9,6 @@
 #include "engine/measure/measures.h"
 #include "engine/mesh/mesh_append.h"
 #include "engine/resolve/conform.h"
-#include "engine/start/missed_places.h"
 #include "engine/start/regular_iso_surface.h"
 #include "kernels/image_value.h"
 #include "pyramid/memory.h"
@@ -94,9 +93,8 @@ double volume_of(const Mesh& mesh, const Executor& executor) {
 
 }  // namespace
 
-Status start_late_bubbles(const ImageObject& object, const Schedule& schedule, Mesh& mesh,
-                          VoxelSet& tried, LateBubbles& started, OperationCounts& counts,
-                          const VoxelRoom& room) {
+MissedPlaces find_late_places(const Mesh& mesh, const ImageObject& object, const Executor& executor,
+                              VoxelSet& tried, const VoxelRoom& room) {
   const auto delta = static_cast<float>(mesh.delta);
   // A vertex of an iso-surface lies at most 0.9 of a voxel's diagonal from a voxel of the place.
   float diagonal = 0;
@@ -105,7 +103,12 @@ Status start_late_bubbles(const ImageObject& object, const Schedule& schedule, M
   const PlaceLimits limits{kBubbleGap * finest + 0.9F * std::sqrt(diagonal),
                            kSmallestBubble * delta,
                            mesh.sizing == nullptr ? kThinSheet * delta : 0};
-  const MissedPlaces places = find_missed_places(mesh, object, limits, schedule, tried, room);
+  return find_missed_places(mesh, object, limits, executor, tried, room);
+}
+
+Status start_late_bubbles(const ImageObject& object, const MissedPlaces& places,
+                          const Schedule& schedule, Mesh& mesh, LateBubbles& started,
+                          OperationCounts& counts) {
   for (const Missed kind : {Missed::kPart, Missed::kCavity}) {
     const int64_t count = places.count[static_cast<size_t>(kind)];
     if (count == 0) continue;

@@ -135,6 +135,38 @@ TEST_CASE("sizes grow no faster than their slope, and are the same for any execu
   CHECK(most < 0.21F);
 }
 
+TEST_CASE("sizes are lowered where voxels are, in whatever order, and grow from there by the slope",
+          "[size_field]") {
+  const Image plane = image_of([](float x, float, float) { return x - kMiddle; });
+  const std::array<int32_t, 3> here{24, 12, 12}, there{24, 20, 4};
+  plc::SizeField both = field_of(plane), twice = both;
+  const plc::SizeField before = both;
+  both.lower(here, 1);
+  both.lower(there, 0.75F);
+  both.bound_slope();
+  twice.lower(there, 0.75F);
+  twice.bound_slope();
+  twice.lower(here, 1);
+  twice.lower(there, 0.75F);
+  twice.bound_slope();
+  float most = 0;
+  for (float z = 0; z < kSide; z += 1.9F) {
+    for (float y = 0; y < kSide - 1; y += 2.1F) {
+      for (float x = 0; x < kSide; x += 2.3F) {
+        REQUIRE(at(both, x, y, z) == at(twice, x, y, z));
+        CHECK(at(both, x, y, z) <= at(before, x, y, z));
+        most = std::max(most, std::abs(at(both, x, y + 1, z) - at(both, x, y, z)) / 0.8F);
+      }
+    }
+  }
+  CHECK(at(both, 24, 12, 12) == 1);
+  CHECK(at(both, 24, 20, 4) == 0.75F);
+  CHECK(at(before, 24, 12, 12) > 3.4F);
+  CHECK(at(both, 24, 46, 46) == at(before, 24, 46, 46));
+  CHECK(most > 0.08F);
+  CHECK(most < 0.12F);
+}
+
 TEST_CASE("beyond the image sizes are those of its border", "[size_field]") {
   const plc::SizeField field = field_of(ball(10));
   CHECK(at(field, -50, kMiddle, kMiddle) == at(field, 0, kMiddle, kMiddle));

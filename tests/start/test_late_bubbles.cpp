@@ -38,9 +38,10 @@ LateBubbles start(Mesh& mesh, const BallScene& scene, VoxelSet& tried, int threa
   const plc::Schedule schedule(threads);
   LateBubbles started;
   plc::OperationCounts counts;
-  REQUIRE(plc::start_late_bubbles({scene.view(), kIso, above}, schedule, mesh, tried, started,
-                                  counts, plc::whole_room(scene.view()))
-              .message() == "");
+  const plc::ImageObject object{scene.view(), kIso, above};
+  const plc::MissedPlaces places =
+      plc::find_late_places(mesh, object, schedule, tried, plc::whole_room(scene.view()));
+  REQUIRE(plc::start_late_bubbles(object, places, schedule, mesh, started, counts).message() == "");
   CHECK(plc::broken_invariant(mesh) == "");
   CHECK(samples::meeting_count(mesh) == 0);
   CHECK(mesh.delta == kDelta);
