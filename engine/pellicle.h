@@ -314,8 +314,10 @@ typedef enum plc_anisotropy PLC_INT {
 
 typedef enum plc_mesh_kind PLC_INT {
   PLC_MESH_UNIFORM = 0, /* edges of one length everywhere, the voxels': the paper's (3.2) */
-  PLC_MESH_ADAPTIVE = 1 /* edges by how much the image's iso-surface bends; sheets come as near to
-                           each other as the image has them. Needs iso, and no springs */
+  PLC_MESH_ADAPTIVE = 1, /* edges by how much the image's iso-surface bends; sheets come as near to
+                            each other as the image has them. Needs iso, and no springs */
+  PLC_MESH_AUTO = 2 /* adaptive where the force is PLC_FORCE_ISO, without springs and edge, else
+                       uniform; the parameters of pyramids and surfaces tell which */
 } plc_mesh_kind;
 
 #define PLC_MAX_LEVELS 32
@@ -331,7 +333,8 @@ typedef enum plc_mesh_kind PLC_INT {
  * interpolated image more closely.
  *
  * Those of an adaptive mesh are by place: where the image's iso-surface bends as a ball of radius R
- * they are about 3 sqrt(tolerance R) in the mean, but within edge_min .. edge_max.
+ * they are about 3 sqrt(tolerance R) in the mean, but within edge_min .. edge_max; 1.6 v at most
+ * around what was found late, and where the surface is folded though the image is not.
  *
  * On a coarser level h everything is reduction^h times as long, as its voxels are. */
 typedef struct plc_parameters {
@@ -652,7 +655,7 @@ PLC_API void plc_surface_destroy(plc_surface* surface);
  * face_count indices, counter-clockwise seen from outside in it. image: where the mesh lies - its
  * dims and voxels are not read; NULL: spacing 1, origin 0, identity. Coordinates are rounded to
  * floats of voxels; vertices without a face are dropped, others keep their order; the surface has
- * no levels, and parameters, range and seconds of 0. As the start of a run: PLC_INIT_MESH. */
+ * no levels, the default parameters, range and seconds of 0. As the start of a run: PLC_INIT_MESH. */
 PLC_API plc_status plc_surface_create(plc_context* context, plc_space space, const plc_image* image,
                                       const double* xyz, int64_t vertex_count, const uint32_t* abc,
                                       int64_t face_count, plc_surface** surface);

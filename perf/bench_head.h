@@ -19,7 +19,7 @@ inline void demand(const plc::Status& status) {
 
 inline constexpr double kBone = 226;  // HU
 
-// The head CT, and the parameters of `pellicle extract --iso 226` for it.
+// The head CT, and the parameters of `pellicle extract --iso 226 --mesh uniform` for it.
 struct HeadVolume {
   plc::tools::LoadedVolume file;
   plc::VolumeView volume;
@@ -37,6 +37,7 @@ struct HeadVolume {
     }
     plc_parameters_defaults(&parameters);
     parameters.iso = kBone;
+    parameters.mesh = PLC_MESH_UNIFORM;
     const auto range = plc::voxel_range(volume, schedule);
     demand(plc::derive_parameters(volume, range, schedule, parameters, background));
   }

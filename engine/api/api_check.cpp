@@ -84,7 +84,7 @@ plc_status plc_surface_create(plc_context* context, plc_space space, const plc_i
     auto made = std::make_unique<plc_surface>();
     made->host = context->host;
     made->frame = plc::frame_of(where);
-    made->parameters.struct_size = sizeof made->parameters;
+    plc_parameters_defaults(&made->parameters);
     made->seconds.struct_size = sizeof made->seconds;
     const plc::VoxelMesh mesh = plc::in_voxels(made->frame.to(space), given);
     const plc::MeshArrays in_voxels{mesh.xyz.data(), given.vertex_count, mesh.abc.data(),

@@ -70,7 +70,7 @@ constexpr const char* kForces[] = {"iso", "gradient", "both"};
 constexpr const char* kBounds[] = {"clamp", "scale"};
 constexpr const char* kAnisotropies[] = {"physical", "voxel", "metric"};
 
-constexpr const char* kMeshes[] = {"uniform", "adaptive"};
+constexpr const char* kMeshes[] = {"uniform", "adaptive", "auto"};
 
 #define FIELD(name)                       \
   Field {                                 \
@@ -91,7 +91,7 @@ constexpr plc_parameter_info kList[] = {
     real(FIELD(reduction), PyramidSpec{}.reduction, kAboveOne, 2, "above 1 and at most 2"),
     choice(FIELD(init), PLC_INIT_BUBBLE, PLC_INIT_BUBBLE, "a plc_init", kInits),
     count({"bubbles", offsetof(plc_parameters, bubbles), 3}, 1, 1, 256, "1 .. 256 per axis"),
-    choice(FIELD(mesh), PLC_MESH_UNIFORM, PLC_MESH_UNIFORM, "a plc_mesh_kind", kMeshes),
+    choice(FIELD(mesh), PLC_MESH_AUTO, PLC_MESH_UNIFORM, "a plc_mesh_kind", kMeshes),
     real(FIELD(edge), 0, 0, kMost, "0 .. 1e6 mm"),
     real(FIELD(tolerance), 0, 0, kMost, "0 .. 1e6 mm"),
     real(FIELD(edge_min), 0, 0, kMost, "0 .. 1e6 mm"),

@@ -33,8 +33,9 @@ say() { { echo; cat; } >>"$dir/section.part"; }
 # overview FIGURES PAPER OURS WHY: the row of the overview.
 overview() { echo "| [$experiment](#$experiment) | $1 | $2 | $3 | $4 |" >"$dir/overview.part"; }
 
-# extract RUN VOLUME OPTIONS...: a surface $dir/RUN.ply with its report and its trace. With KEEP=1 a
-# run of an earlier call with the same options is taken as it is: to go on after an interrupt.
+# extract RUN VOLUME OPTIONS...: a surface $dir/RUN.ply with its report and its trace, of a uniform
+# mesh, as the paper's is. With KEEP=1 a run of an earlier call with the same options is taken as it
+# is: to go on after an interrupt.
 extract() {
   local name=$1 volume=$2
   shift 2
@@ -46,7 +47,7 @@ extract() {
   echo "$volume $*" >"$dir/$name.args"
   echo "$name: extract $(basename "$volume") $*"
   timeout "$run_limit" "$pellicle" extract "$volume" -o "$dir/$name.ply" --report "$dir/$name.json" \
-    --trace "$dir/$name.csv" --quiet "$@"
+    --trace "$dir/$name.csv" --mesh uniform --quiet "$@"
 }
 
 # phantom KIND OPTIONS...: $dir/KIND.nrrd.

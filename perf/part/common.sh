@@ -3,7 +3,7 @@
 # run, and details, any JSON.
 
 head_ct=/usr/share/doc/invesalius-examples/examples/Cranium.inv3
-bone=(--iso 226 --curvature 0.4)
+bone=(--iso 226 --curvature 0.4 --mesh uniform)
 cores=$(nproc)
 
 # A folder for the files of part NAME.

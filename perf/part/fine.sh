@@ -1,6 +1,7 @@
-# As the paper has it, and by default: with late bubbles.
+# As the paper has it, with late bubbles, and by default, which is adaptive.
 variant fine extract "$head_ct" "${bone[@]}" --levels 3 --no-late-bubbles
 variant late extract "$head_ct" "${bone[@]}" --levels 3
+variant default extract "$head_ct" --iso 226
 run_variants
 
 # check VARIANT: whether it is the surface that was asked for, against the main component of `direct`.
@@ -25,3 +26,5 @@ for name in fine late; do
   levels "$name"
   check "$name"
 done
+measure head_default s default '.seconds | .pyramid + .evolution'
+levels default

@@ -104,6 +104,7 @@ rows peers '
   | select($d.peers and $m.coarse_to_fine)
   | [{title: "Pellicle, coarse to fine", m: $m.coarse_to_fine, ours: 1},
      {title: "Pellicle, with late bubbles", m: $m.coarse_to_fine_late, ours: 1},
+     {title: "Pellicle, by default: adaptive", m: $m.head_default, ours: 1},
      {title: "Pellicle, direct", m: $m.direct, ours: 1},
      ($d.peers[] | select($d[.].pyramid | not) | {title: $d[.].title, m: $m[.], ours: 4})]
   | map(select(.m)) | sort_by(-.m.median)[] | "\"\(.title)\" \(.m.median) \(.m.min) \(.m.max) \(.ours)"'

@@ -42,6 +42,7 @@ def head: "| approach | | I_3 | I_2 | I_1 | I_0 | total |", "|---|---|---|---|--
   (paper["1"][] | theirs),
   ($d["levels-fine"] | select(.) | ours("coarse to fine")),
   ($d["levels-late"] | select(.) | ours("coarse to fine, late bubbles")),
+  ($d["levels-default"] | select(.) | ours("by default, adaptive")),
   ($d["levels-direct"] | select(.) | ours("direct")),
   "",
   "## Table 2: vessels", "",

@@ -99,7 +99,10 @@ struct Job {
       });
   plc_image image = samples::image_of(volume);
   plc_parameters parameters = samples::parameters(0.5, 1);
-  Job() { parameters.max_iterations = 8; }
+  explicit Job(plc_mesh_kind mesh = PLC_MESH_UNIFORM) {
+    parameters.mesh = mesh;
+    parameters.max_iterations = 8;
+  }
 };
 
 // call() until it needs no allocation that fails. Each failure must say that memory was out - or do
@@ -217,7 +220,7 @@ TEST_CASE("an extraction by bricks survives every allocation that fails", "[faul
 
 TEST_CASE("making, stepping, saving and restoring a run survives every allocation that fails",
           "[faults]") {
-  const Job job;
+  const Job job(PLC_MESH_ADAPTIVE);
   const Context context = lent_context();
   make_room_for_messages(context.get(), job);
   const plc_parameters& p = job.parameters;

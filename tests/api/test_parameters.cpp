@@ -415,6 +415,7 @@ TEST_CASE("the pyramid is built with the parameters' window, padding and reducti
 TEST_CASE("lengths of an adaptive mesh are derived from the voxels, and checked against them",
           "[parameters]") {
   plc_parameters p = defaults();
+  p.mesh = PLC_MESH_UNIFORM;
   CHECK(plc::derive_mesh(2, 100, p).ok());
   CHECK(p.edge_max == 0);  // a uniform mesh has none
   CHECK(p.edge == Approx(2.5));
@@ -439,6 +440,26 @@ TEST_CASE("lengths of an adaptive mesh are derived from the voxels, and checked 
   p.edge_max = 1;
   CHECK(plc::derive_mesh(2, 100, p).message() ==
         "edges of 1.25 .. 1 mm: must be a range within 0.3125 .. 19.75 mm for voxels of 2 mm");
+}
+
+TEST_CASE("a mesh is adaptive where it can be, unless the caller says which", "[parameters]") {
+  const auto kind = [](const auto& change) {
+    plc_parameters p = defaults();
+    p.iso = 0.5;
+    change(p);
+    REQUIRE(plc::derive_mesh(2, 100, p).ok());
+    CHECK(plc::recovery_spec(p, 2).sizes.has_value() == (p.mesh == PLC_MESH_ADAPTIVE));
+    return p.mesh;
+  };
+  CHECK(kind([](plc_parameters&) {}) == PLC_MESH_ADAPTIVE);
+  CHECK(kind([](plc_parameters& p) { p.mesh = PLC_MESH_UNIFORM; }) == PLC_MESH_UNIFORM);
+  CHECK(kind([](plc_parameters& p) { p.edge = 3; }) == PLC_MESH_UNIFORM);
+  CHECK(kind([](plc_parameters& p) { p.spring = 0.1; }) == PLC_MESH_UNIFORM);
+  CHECK(kind([](plc_parameters& p) { p.force = PLC_FORCE_BOTH; }) == PLC_MESH_UNIFORM);
+  CHECK(kind([](plc_parameters& p) {
+          p.force = PLC_FORCE_BOTH;
+          p.mesh = PLC_MESH_ADAPTIVE;
+        }) == PLC_MESH_ADAPTIVE);
 }
 
 TEST_CASE("an adaptive mesh needs an iso-value and has no springs", "[parameters]") {

@@ -56,6 +56,18 @@ Volume edged_ball(int64_t n, double radius) {
   return volume;
 }
 
+// A plate of 1.6 voxels, tilted; with a hole of that radius in its middle.
+Volume edged_plate(double hole) {
+  return sampled(empty_volume({56, 56, 56}, {1, 1, 1}), [&](const Point& p) {
+    const double off = (p[0] + 0.4 * p[1] + 0.2 * p[2]) / std::sqrt(1.2);
+    const double squared = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] - off * off;
+    const double within = std::sqrt(std::max(squared, 0.0));
+    double depth = std::min(0.8 - std::abs(off), 20 - within);
+    if (hole > 0) depth = std::min(depth, within - hole);
+    return std::clamp(0.5 + 0.5 * depth, 0.0, 1.0);
+  });
+}
+
 }  // namespace
 
 TEST_CASE("every status has a text of its own, and what is no status has one, too",
@@ -125,6 +137,7 @@ TEST_CASE("all edges of a uniform mesh are as long as the caller wants them",
     p.edge = edge;
     return extract(context.get(), image, p);
   };
+  p.mesh = PLC_MESH_UNIFORM;
   const Surface usual = made(0);
   CHECK(parameters_of(usual.get()).edge == 1.25);
   CHECK(plc_surface_hash(made(1.25).get()) == plc_surface_hash(usual.get()));
@@ -177,4 +190,39 @@ TEST_CASE("edges are as long as the header says", "[pellicle_outputs]") {
       CHECK(adaptive.edge_mean == Approx(3 * std::sqrt(tolerance * radius * voxel)).epsilon(0.15));
     }
   }
+}
+
+// The border of such a hole, as a coarse level may tear it, is nothing of the image's.
+TEST_CASE("a hole that only the surface has in a thin plate is closed but for pores",
+          "[pellicle_outputs]") {
+  const Context context = make_context();
+  const Volume with = edged_plate(7), without = edged_plate(0);
+  plc_parameters p = parameters(0.5, 0);
+  const Surface torn = extract(context.get(), image_of(with), p);
+  const Surface whole = extract(context.get(), image_of(without), p);
+  CHECK(parameters_of(torn.get()).mesh == PLC_MESH_ADAPTIVE);
+  CHECK(measured(context.get(), torn.get(), PLC_SPACE_LPS).genus == 1);
+  const auto arrays = [](const Surface& surface) {
+    return std::pair(positions_f64(surface.get(), PLC_SPACE_VOXEL),
+                     faces(surface.get(), PLC_SPACE_VOXEL));
+  };
+  const auto [xyz, abc] = arrays(torn);
+  plc_extras extras = no_extras();
+  extras.space = PLC_SPACE_VOXEL;
+  extras.mesh_xyz = xyz.data();
+  extras.mesh_vertex_count = static_cast<int64_t>(xyz.size() / 3);
+  extras.mesh_abc = abc.data();
+  extras.mesh_face_count = static_cast<int64_t>(abc.size() / 3);
+  p.init = PLC_INIT_MESH;
+  const Surface closed = extract(context.get(), image_of(without), p, &extras);
+  const auto [from_xyz, from_abc] = arrays(whole);
+  const auto [to_xyz, to_abc] = arrays(closed);
+  plc_distances distances{};
+  distances.struct_size = sizeof distances;
+  REQUIRE(
+      plc_mesh_distance(context.get(), from_xyz.data(), static_cast<int64_t>(from_xyz.size() / 3),
+                        from_abc.data(), static_cast<int64_t>(from_abc.size() / 3), to_xyz.data(),
+                        static_cast<int64_t>(to_xyz.size() / 3), to_abc.data(),
+                        static_cast<int64_t>(to_abc.size() / 3), nullptr, &distances) == PLC_OK);
+  CHECK(distances.max < 1.5);
 }

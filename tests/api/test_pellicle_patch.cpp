@@ -32,7 +32,10 @@ struct Scene {
   plc_image image = samples::image_of(volume);
   plc_parameters parameters = samples::parameters(kIso, 0);
 
-  Scene() { parameters.late_bubbles = 0; }
+  Scene() {
+    parameters.mesh = PLC_MESH_UNIFORM;
+    parameters.late_bubbles = 0;
+  }
 };
 
 struct Part {

@@ -115,6 +115,7 @@ void choose_rest(Case& c, Random& random) {
 void choose_mesh(Case& c) {
   Random random = draws(c.seed, Part::kMesh);
   plc_parameters& p = c.parameters;
+  p.mesh = PLC_MESH_UNIFORM;
   if (!once_in(random, 3) || std::isnan(p.iso)) return;
   p.mesh = PLC_MESH_ADAPTIVE;
   p.spring = 0;

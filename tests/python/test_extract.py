@@ -332,7 +332,7 @@ def test_the_command_makes_the_same_surface(tmp_path):
 def test_frozen_sites_lie_where_the_surface_is():
     rng = np.random.default_rng(3)
     image = rng.uniform(0, 1, (24, 24, 24)).astype(np.float32)
-    surface = pellicle.extract(image, 0.5, levels=0)
+    surface = pellicle.extract(image, 0.5, levels=0, mesh="uniform")
     places, vertices = surface.frozen_sites
     assert places.dtype == np.float64 and places.shape == (len(vertices), 3)
     assert len(vertices) == surface.levels[-1].frozen_sites > 0

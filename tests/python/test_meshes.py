@@ -9,7 +9,7 @@ import pellicle
 
 @pytest.fixture(scope="module")
 def sphere():
-    return pellicle.extract(ball(40, 14), 0.5, curvature=0.1, space="voxel")
+    return pellicle.extract(ball(40, 14), 0.5, curvature=0.1, mesh="uniform", space="voxel")
 
 
 def test_check_tells_what_is_wrong():

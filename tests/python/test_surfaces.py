@@ -234,7 +234,9 @@ def test_mesh_is_a_start_or_how_fine_the_surface_is():
     image = ball(32, 11)
     uniform = pellicle.extract(image, 0.5, mesh="uniform")
     adaptive = pellicle.extract(image, 0.5, mesh="adaptive", tolerance=0.3)
-    assert uniform.hash == pellicle.extract(image, 0.5).hash
+    auto = pellicle.extract(image, 0.5)
+    assert auto.parameters.mesh == "adaptive" and auto.parameters.tolerance == pytest.approx(1 / 24)
+    assert uniform.hash == pellicle.extract(image, 0.5, mesh="auto", edge=1.25).hash
     assert adaptive.parameters.mesh == "adaptive" and adaptive.vertex_count < uniform.vertex_count
     pyramid = pellicle.Pyramid(pellicle.Volume(image), 0.5, mesh="adaptive", tolerance=0.3)
     run = pellicle.Run(pyramid, mesh="adaptive")
@@ -243,3 +245,4 @@ def test_mesh_is_a_start_or_how_fine_the_surface_is():
         pellicle.extract(image, 0.5, mesh="adaptve")
     parts = pellicle.extract_labels(image > 0.5, mesh="adaptive", tolerance=0.3)
     assert parts[1].parameters.mesh == "adaptive"
+    assert pellicle.extract_labels(image > 0.5)[1].parameters.mesh == "uniform"

@@ -251,7 +251,7 @@ says "report without frozen sites" '"sites": \[\]' out/r.json
 works "--max-iterations" 0 "$pellicle" extract ball.nrrd --iso 0.5 --levels 0 --max-iterations 3 --quiet -o out/r.ply
 says "an end by the most iterations" "^pellicle: level 0 did not come to rest within --max-iterations 3$" stderr
 works "phantom" 0 "$pellicle" phantom sierpinski -o sites.nrrd --size 27
-works "frozen sites" 0 "$pellicle" extract sites.nrrd --iso 128 -o out/r.ply --report out/r.json
+works "frozen sites" 0 "$pellicle" extract sites.nrrd --iso 128 --mesh uniform -o out/r.ply --report out/r.json
 says "frozen sites" "^level 0 .*, [0-9]+ sites of [0-9]+ vertices frozen$" stdout
 says "report of frozen sites" '"place":' out/r.json
 works "--each-level" 0 "$pellicle" extract ball.nrrd --iso 0.5 --levels 1 --each-level --quiet -o out/l.ply

@@ -279,18 +279,16 @@ is "draft" "$(json out/d.json '.parameters | "\(.late_bubbles) \(.epsilon) \(.me
 works "--quality normal" 0 "$pellicle" extract blobs.nrrd --iso 400 --quality normal --quiet -o out/n.ply
 works "no quality" 0 "$pellicle" extract blobs.nrrd --iso 400 --quiet -o out/m.ply
 cmp -s out/n.ply out/m.ply || fails "--quality normal is not the default"
-works "--quality fine" 0 "$pellicle" extract blobs.nrrd --iso 400 --quality fine --quiet -o out/f.ply --report out/f.json
-is "fine" "$(json out/f.json .parameters.mesh)" adaptive
-works "an option on top" 0 "$pellicle" extract blobs.nrrd --iso 400 --mesh uniform --epsilon 1e-3 --quality fine --quiet \
+works "an option on top" 0 "$pellicle" extract blobs.nrrd --iso 400 --mesh adaptive --epsilon 1e-3 --quality draft --quiet \
   -o out/f.ply --report out/f.json
-is "an option on top, whatever stands first" "$(json out/f.json '.parameters | "\(.epsilon) \(.mesh)"')" "0.001 uniform"
+is "an option on top, whatever stands first" "$(json out/f.json '.parameters | "\(.epsilon) \(.mesh)"')" "0.001 adaptive"
 left_over >/dev/null
 preset_of() { json "out/s-$1.json" '.parameters | "\(.late_bubbles) \(.epsilon) \(.mesh)"'; }
 works "presets of structures" 0 "$pellicle" extract blobs.nrrd --quality draft --mesh adaptive --quiet -o out/s.ply \
-  --report out/s.json --structure a="--iso 400 --quality normal" --structure b="--iso 400 --quality fine" \
+  --report out/s.json --structure a="--iso 400 --quality normal" --structure b="--iso 400 --spring 0.1 --mesh auto" \
   --structure c="--iso 400" --structure d="--iso 400 --quality draft --epsilon 1e-3"
-is "normal in draft" "$(preset_of a)" "true 5e-06 uniform"
-is "fine in draft" "$(preset_of b)" "true 5e-06 adaptive"
+is "normal in draft" "$(preset_of a)" "true 5e-06 adaptive"
+is "springs in draft" "$(preset_of b)" "false 0.0001 uniform"
 is "no preset in draft" "$(preset_of c)" "false 0.0001 adaptive"
 is "an option on top in draft" "$(preset_of d)" "false 0.001 uniform"
 left_over >/dev/null

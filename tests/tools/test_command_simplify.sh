@@ -10,7 +10,7 @@ source "$tests/tools/command_helpers.sh"
 value() { "$pellicle" check "$1" | awk -v name="$2" '$1 == name { print $2 }'; }
 
 "$pellicle" phantom blobs --size 48 --seed 3 -o blobs.nrrd >/dev/null
-"$pellicle" extract blobs.nrrd --iso 0.5 -o blobs.ply --quiet
+"$pellicle" extract blobs.nrrd --iso 0.5 --mesh uniform -o blobs.ply --quiet
 
 works "simplify" 0 "$pellicle" simplify blobs.ply --tolerance 0.15 -o light.ply
 says "simplify" "^surface +[0-9]+ of $(value blobs.ply vertices) vertices" stdout

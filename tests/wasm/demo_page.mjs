@@ -201,7 +201,7 @@ for (const name of Object.keys(good)) {
   await sameAsCommand(page, name, name);
 }
 
-// What can be chosen: the value by hand, darker objects, adaptive meshes, levels, a part of the image.
+// What can be chosen: the value by hand, darker objects, uniform meshes, levels, a part of the image.
 {
   await drop(page, 'oblique.nii.gz');
   const box = await (await page.$('#histogram')).boundingBox();
@@ -226,9 +226,9 @@ for (const name of Object.keys(good)) {
   await choose(page, 'iso', 600);
   await choose(page, 'inside', 'above');
   await choose(page, 'levels', -1);
-  await choose(page, 'mesh', 'adaptive');
+  await choose(page, 'mesh', 'uniform');
   await extract(page);
-  await sameAsCommand(page, 'an adaptive mesh', 'oblique.nii.gz');
+  await sameAsCommand(page, 'a uniform mesh', 'oblique.nii.gz');
   check('surfaces are kept beside each other', (await page.evaluate(() => window.pellicle.state.surfaces.length)) === 2);
   await choose(page, 'iso', 5000);
   check('the value stays in the range', (await page.$eval('#iso', (input) => input.value)) === '1000');

@@ -72,6 +72,8 @@ plc_parameters parameters_of(const ExtractOptions& options, const Piece& piece) 
   p.init = PLC_INIT_ISO;
   p.late_bubbles = 0;
   p.curvature *= kLabelCurvatures[piece.curvature];
+  // Labels touch: coarse facets would keep them apart.
+  if (p.mesh == PLC_MESH_AUTO) p.mesh = PLC_MESH_UNIFORM;
   return p;
 }
 

@@ -13,8 +13,8 @@ const Choices<plc_space> kSpaces = {
 const Choices<NiftiFrame> kNiftiFrames = {
     {"auto", NiftiFrame::kAuto}, {"sform", NiftiFrame::kSform}, {"qform", NiftiFrame::kQform}};
 const Choices<plc_bound> kBounds = {{"clamp", PLC_BOUND_CLAMP}, {"scale", PLC_BOUND_SCALE}};
-const Choices<plc_mesh_kind> kMeshes = {{"uniform", PLC_MESH_UNIFORM},
-                                        {"adaptive", PLC_MESH_ADAPTIVE}};
+const Choices<plc_mesh_kind> kMeshes = {
+    {"auto", PLC_MESH_AUTO}, {"uniform", PLC_MESH_UNIFORM}, {"adaptive", PLC_MESH_ADAPTIVE}};
 const Choices<plc_anisotropy> kAnisotropies = {{"physical", PLC_ANISOTROPY_PHYSICAL},
                                                {"voxel", PLC_ANISOTROPY_VOXEL},
                                                {"metric", PLC_ANISOTROPY_METRIC}};
@@ -54,14 +54,11 @@ void normal(plc_parameters& p) {
 void draft(plc_parameters& p) {
   constexpr double kSoonCalm = 1e-4;  // twenty times the default
   normal(p);
+  p.mesh = PLC_MESH_UNIFORM;
   p.late_bubbles = 0;
   p.epsilon = kSoonCalm;
 }
-void fine(plc_parameters& p) {
-  normal(p);
-  p.mesh = PLC_MESH_ADAPTIVE;
-}
-const Choices<Preset> kQualities = {{"draft", draft}, {"normal", normal}, {"fine", fine}};
+const Choices<Preset> kQualities = {{"draft", draft}, {"normal", normal}};
 
 void read_edge_range(const std::string& text, plc_parameters& p) {
   const auto v = to_numbers("--edge-range", text, 2);
@@ -184,10 +181,10 @@ class Declarations {
   // Before the options that it sets: what is told of them, too, goes on top of it.
   void quality() {
     group_ = "Mesh";
-    text("--quality", "draft|normal|fine", "normal",
-         "Preset, on top of which the other options go: draft, a first look (--no-late-bubbles "
-         "--epsilon 1e-4: parts beside the one the bubble meets are missing); normal, the "
-         "defaults; fine, thin parts whole (--mesh adaptive)",
+    text("--quality", "draft|normal", "normal",
+         "Preset, on top of which the other options go: draft, a first look (--mesh uniform "
+         "--no-late-bubbles --epsilon 1e-4: thin parts, and those beside the one the bubble meets, "
+         "are missing); normal, the defaults",
          [&p = p_](const std::string& s) { to_choice("--quality", s, kQualities)(p); });
   }
 
@@ -283,7 +280,8 @@ class Declarations {
     group_ = "Mesh";
     choice("--mesh", kMeshes, p_.mesh,
            "Edges of one length, the voxels' (uniform, the paper's), or by how much the surface in "
-           "the image bends (adaptive)");
+           "the image bends (adaptive: thin parts whole, flat ones with few vertices); auto: "
+           "adaptive where --force is iso, without --spring and --edge");
     number("--edge", p_.edge,
            "Uniform: about the mean of all edges, mm, from a quarter of a voxel to a tenth of the "
            "image; 0: 1.25 voxels");

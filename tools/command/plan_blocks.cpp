@@ -125,6 +125,9 @@ void add_block_plan(CLI::App& app, BlockOptions& options) {
 
 int run_block_plan(BlockOptions& options, InterruptGuard& interrupt) {
   check_plan(options);
+  // The longer edges may be, the larger blocks must be.
+  plc_parameters& p = options.extract.parameters;
+  if (p.mesh == PLC_MESH_AUTO) p.mesh = PLC_MESH_UNIFORM;
   const double start = now();
   interrupt.end_at_once();
   ExtractVolume volume(options.extract);

@@ -18,7 +18,7 @@ export interface Progress {
 
 /**
  * Of the image, of the call, and every parameter of the engine by its name in engine/pellicle.h, in
- * camelCase: `iso`, `curvature`, `maxIterations`, ... A choice is a word: `mesh: 'adaptive'`.
+ * camelCase: `iso`, `curvature`, `maxIterations`, ... A choice is a word: `mesh: 'uniform'`.
  */
 export interface Options {
   /** The value that the surface is drawn at, in the image's units. */

@@ -52,7 +52,7 @@ class CommonChanges(TypedDict, total=False):
 class PyramidChanges(CommonChanges, total=False):
     """Of a function that takes `iso` apart."""
 
-    mesh: Literal["uniform", "adaptive"]
+    mesh: Literal["uniform", "adaptive", "auto"]
 
 
 class RunChanges(CommonChanges, total=False):
@@ -64,5 +64,5 @@ class RunChanges(CommonChanges, total=False):
 class Changes(RunChanges, total=False):
     """All fields."""
 
-    mesh: Literal["uniform", "adaptive"]
+    mesh: Literal["uniform", "adaptive", "auto"]
 

@@ -30,7 +30,7 @@ def extract(
     space: Space = "lps",
     seeds: npt.ArrayLike | None = None,
     mask: npt.ArrayLike | None = None,
-    mesh: MeshLike | Literal["uniform", "adaptive"] | None = None,
+    mesh: MeshLike | Literal["uniform", "adaptive", "auto"] | None = None,
     obstacles: MeshLike | None = None,
     obstacle_gap: float = 0,
     attachments: npt.ArrayLike | None = None,
@@ -73,8 +73,8 @@ def extract(
     mask : array_like, optional
         An array of the image's shape and order; the start is the surface of where it is not 0.
     mesh : Surface or (vertices, faces), optional
-        Closed, oriented and free of self-intersections, to start from. "uniform" and "adaptive" are
-        the parameter of that name: how fine the surface is.
+        Closed, oriented and free of self-intersections, to start from. "uniform", "adaptive"
+        and "auto" are the parameter of that name: how fine the surface is.
     obstacles : Surface or (vertices, faces), optional
         Faces that never move, and that the surface neither meets nor passes over; it starts apart
         from them, with ``levels=0`` and ``late_bubbles=False``.

@@ -78,6 +78,8 @@ def extract_labels(
     if taken:
         raise TypeError(f"extract_labels() takes no {taken[0]}: the labels tell it")
     parameters = Parameters().replace(**changes)
+    if parameters.mesh == "auto":  # labels touch: coarse facets would keep them apart
+        parameters = parameters.replace(mesh="uniform")
     context = Context() if context is None else context
     voxels, frame = located(image, order, spacing, origin, direction)
     pieces = [

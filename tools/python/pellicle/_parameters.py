@@ -52,8 +52,10 @@ class Parameters:
         where `init` is not given.
     bubbles : tuple of int
         How many bubbles along x, y, z, each 1 .. 256.
-    mesh : {"uniform", "adaptive"}
-        Edges of one length, the voxels' (3.2), or by how much the image's iso-surface bends.
+    mesh : {"uniform", "adaptive", "auto"}
+        Edges of one length, the voxels' (3.2), or by how much the image's iso-surface bends; auto:
+        adaptive where `force` is "iso", without `spring` and `edge`, but uniform for labels and
+        blocks.
     edge : float
         Of a uniform mesh: about the mean of its edges, mm, from a quarter of a voxel to a tenth of
         the image; 0: 1.25 voxels.
@@ -111,7 +113,7 @@ class Parameters:
     reduction: float = _D["reduction"]
     init: Literal["bubble", "bubbles", "seeds", "iso", "mask", "mesh"] = _D["init"]
     bubbles: tuple[int, int, int] = _D["bubbles"]
-    mesh: Literal["uniform", "adaptive"] = _D["mesh"]
+    mesh: Literal["uniform", "adaptive", "auto"] = _D["mesh"]
     edge: float = _D["edge"]
     tolerance: float = _D["tolerance"]
     edge_min: float = _D["edge_min"]

@@ -268,7 +268,7 @@ class Run:
         space: Space = "lps",
         seeds: npt.ArrayLike | None = None,
         mask: npt.ArrayLike | None = None,
-        mesh: MeshLike | Literal["uniform", "adaptive"] | None = None,
+        mesh: MeshLike | Literal["uniform", "adaptive", "auto"] | None = None,
         obstacles: MeshLike | None = None,
         obstacle_gap: float = 0,
         attachments: npt.ArrayLike | None = None,

@@ -40,7 +40,7 @@ const quoted = (name) => (/^[\w./-]+$/.test(name) ? name : `'${name.replaceAll("
 export function commandLine(name, { iso, below, mesh, levels }, box) {
   const words = ['pellicle extract', quoted(name), '-o surface.ply', iso < 0 ? `--iso=${iso}` : `--iso ${iso}`];
   if (below) words.push('--inside below');
-  if (mesh !== 'uniform') words.push(`--mesh ${mesh}`);
+  if (mesh !== 'adaptive') words.push(`--mesh ${mesh}`);
   if (levels >= 0) words.push(`--levels ${levels}`);
   if (box) words.push(`--box ${[0, 1, 2].flatMap((k) => [box.low[k], box.high[k]]).join(',')}`);
   return words.join(' ');
