@@ -313,7 +313,7 @@ typedef enum plc_anisotropy PLC_INT {
 } plc_anisotropy;
 
 typedef enum plc_mesh_kind PLC_INT {
-  PLC_MESH_UNIFORM = 0, /* edges of one length everywhere, the voxels': the paper's (3.2) */
+  PLC_MESH_UNIFORM = 0,  /* edges of one length everywhere, the voxels': the paper's (3.2) */
   PLC_MESH_ADAPTIVE = 1, /* edges by how much the image's iso-surface bends; sheets come as near to
                             each other as the image has them. Needs iso, and no springs */
   PLC_MESH_AUTO = 2 /* adaptive where the force is PLC_FORCE_ISO, without springs and edge, else
@@ -655,7 +655,7 @@ PLC_API void plc_surface_destroy(plc_surface* surface);
  * face_count indices, counter-clockwise seen from outside in it. image: where the mesh lies - its
  * dims and voxels are not read; NULL: spacing 1, origin 0, identity. Coordinates are rounded to
  * floats of voxels; vertices without a face are dropped, others keep their order; the surface has
- * no levels, the default parameters, range and seconds of 0. As the start of a run: PLC_INIT_MESH. */
+ * no levels, the default parameters, range and seconds of 0. To start a run from: PLC_INIT_MESH. */
 PLC_API plc_status plc_surface_create(plc_context* context, plc_space space, const plc_image* image,
                                       const double* xyz, int64_t vertex_count, const uint32_t* abc,
                                       int64_t face_count, plc_surface** surface);
