@@ -36,7 +36,7 @@ bool is_fold(const Mesh& mesh, uint32_t v) {
 
 bool find_folds(const Mesh& mesh, const ImageView& image, VoxelSet& folds) {
   // Sizes are whole steps.
-  const float least = kLateSize - 1 + SizeField::kStep;
+  const float least = std::max(kLateSize, mesh.sizing->field.finest()) - 1 + SizeField::kStep;
   bool any = false;
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     if (!mesh.alive(v) || mesh.is_absent(v) || mesh.position[v].w <= least) continue;

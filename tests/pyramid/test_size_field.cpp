@@ -162,6 +162,9 @@ TEST_CASE("sizes are lowered where voxels are, in whatever order, and grow from 
   CHECK(at(both, 24, 12, 12) == 1);
   CHECK(at(both, 24, 20, 4) == 0.75F);
   CHECK(at(before, 24, 12, 12) > 3.4F);
+  both.lower(there, 0.25F);
+  both.bound_slope();
+  CHECK(at(both, 24, 20, 4) == both.finest());
   CHECK(at(both, 24, 46, 46) == at(before, 24, 46, 46));
   CHECK(most > 0.08F);
   CHECK(most < 0.12F);
