@@ -38,13 +38,13 @@ def beats_during(function):
 
 def test_other_threads_run_during_long_calls():
     image = ball(56, 22)
-    surface = pellicle.extract(image, 0.5)
+    surface = pellicle.extract(image, 0.5, mesh="uniform")  # more vertices: longer calls
     volume = pellicle.Volume(image)
     pyramid = pellicle.Pyramid(volume, 0.5, levels=0)
     mesh = (surface.vertices, surface.faces)
     calls = {
-        "extract": lambda: pellicle.extract(image, 0.5, levels=0),
-        "finish": lambda: pellicle.Run(pyramid).finish(),
+        "extract": lambda: pellicle.extract(image, 0.5, levels=0, mesh="uniform"),
+        "finish": lambda: pellicle.Run(pyramid, mesh="uniform").finish(),
         "geodesic": lambda: pellicle.geodesic(mesh, 0),
         "distance": lambda: pellicle.distance(mesh, mesh),
     }
