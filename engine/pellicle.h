@@ -317,7 +317,7 @@ typedef enum plc_mesh_kind PLC_INT {
   PLC_MESH_ADAPTIVE = 1, /* edges by how much the image's iso-surface bends; sheets come as near to
                             each other as the image has them. Needs iso, and no springs */
   PLC_MESH_AUTO = 2 /* adaptive where the force is PLC_FORCE_ISO, without springs and edge, else
-                       uniform; the parameters of pyramids and surfaces tell which */
+                       uniform; the surface's parameters tell which */
 } plc_mesh_kind;
 
 #define PLC_MAX_LEVELS 32

@@ -79,12 +79,6 @@ Status check_mesh(const plc_parameters& p) {
   return {};
 }
 
-void decide_mesh(plc_parameters& p) {
-  if (p.mesh != PLC_MESH_AUTO) return;
-  const bool adaptive = p.force == PLC_FORCE_ISO && p.spring == 0 && p.edge == 0;
-  p.mesh = adaptive ? PLC_MESH_ADAPTIVE : PLC_MESH_UNIFORM;
-}
-
 }  // namespace
 
 Status check_parameters(const plc_parameters& p) {
@@ -109,7 +103,6 @@ Status check_parameters(const plc_parameters& p) {
 
 Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
                          const Executor& executor, plc_parameters& p, double& background) {
-  decide_mesh(p);
   const bool above = p.inside_below == 0;
   if (range.low == range.high) {
     return {ErrorCode::kInvalidData,
@@ -165,7 +158,10 @@ Status derive_edge(double unit, double side, plc_parameters& p) {
 }
 
 Status derive_mesh(double unit, double side, plc_parameters& p) {
-  decide_mesh(p);
+  if (p.mesh == PLC_MESH_AUTO) {
+    const bool adaptive = p.force == PLC_FORCE_ISO && p.spring == 0 && p.edge == 0;
+    p.mesh = adaptive ? PLC_MESH_ADAPTIVE : PLC_MESH_UNIFORM;
+  }
   if (p.mesh != PLC_MESH_ADAPTIVE) return derive_edge(unit, side, p);
   const double delta = unit / kUnitPerDelta;
   const SizeSpec sizes;

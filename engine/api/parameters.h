@@ -11,10 +11,9 @@ namespace plc {
 // the range.
 Status check_parameters(const plc_parameters& parameters);
 
-// Fills in what is NAN, -1 or PLC_MESH_AUTO: window, pad value, level count, kind of mesh. `range`
-// is that of the image; `background` is set to the typical value across the surface from the object
-// (window.h). Errors: kInvalidArgument, kInvalidData (constant or not finite image, iso outside the
-// range).
+// Fills in what is NAN or -1: window, pad value, level count. `range` is that of the image;
+// `background` is set to the typical value across the surface from the object (window.h). Errors:
+// kInvalidArgument, kInvalidData (constant or not finite image, iso outside the range).
 Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
                          const Executor& executor, plc_parameters& parameters, double& background);
 
@@ -31,12 +30,12 @@ inline double denormalised(const plc_parameters& p, double value) {
 double level_iso_bound(const plc_parameters& parameters, double background);
 
 PyramidSpec pyramid_spec(const plc_parameters& parameters);
-// Everything but the iso-values of the levels and what plc_extras holds.
+
 // Fills in the kind of mesh, and what is 0 of its lengths. unit: U_0, side: the image's shortest
 // one, mm. Errors: kInvalidArgument, edges that the image's voxels do not allow.
 Status derive_mesh(double unit, double side, plc_parameters& parameters);
 
-// unit: U_0, mm.
+// Everything but the iso-values of the levels and what plc_extras holds. unit: U_0, mm.
 RecoverySpec recovery_spec(const plc_parameters& parameters, double unit);
 
 }  // namespace plc

@@ -161,6 +161,7 @@ class Recovery {
   Status build_gradient_image();
   Status build_sizing();
   void lower_sizes();
+  void resize_all();
   Status adapt();
   void start_round(int number, bool late);
   int iterations_left() const;  // of the round

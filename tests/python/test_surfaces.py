@@ -109,6 +109,7 @@ def test_pickled_surface_of_a_mirrored_image_faces_outward():
     vertices, faces = octahedron(3)
     mirror = np.diag([1, 1, -1])
     before = pellicle.Surface.from_mesh(vertices, faces, direction=mirror)
+    assert before.parameters == pellicle.Parameters()
     after = pickle.loads(pickle.dumps(before))
     for space in ("lps", "ras", "voxel"):
         assert np.array_equal(after.in_space(space).faces, before.in_space(space).faces)
