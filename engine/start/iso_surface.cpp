@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string>
 
 #include "engine/base/blocks.h"
@@ -33,7 +34,7 @@ using Face = std::array<uint32_t, 3>;
 class Lattice {
  public:
   Lattice(const ImageObject& object, const LatticeValues& values)
-      : image_(object.image), values_(values), iso_(object.iso), above_(object.above) {
+      : image_(object.image), values_(values), iso_(object.iso) {
     for (size_t a = 0; a < 3; ++a) size_[a] = static_cast<size_t>(image_.dims[a]) + 2;
   }
 
@@ -47,13 +48,8 @@ class Lattice {
   void classify(size_t z, Vector<uint8_t>& inside) const {
     inside.assign(slice_points(), 0);
     if (z == 0 || z + 1 >= size_[2]) return;
-    Vector<float> row(size_[0]);
     for (size_t y = 1; y + 1 < size_[1]; ++y) {
-      values_.row(voxel(y), voxel(z), row.data());
-      uint8_t* to = inside.data() + point(1, y);
-      for (size_t x = 0; x + 2 < size_[0]; ++x) {
-        to[x] = static_cast<uint8_t>(above_ ? row[x] >= iso_ : row[x] <= iso_);
-      }
+      values_.sides(voxel(y), voxel(z), inside.data() + point(1, y));
     }
   }
 
@@ -87,29 +83,58 @@ class Lattice {
   const ImageView& image_;
   const LatticeValues& values_;
   float iso_;
-  bool above_;
   std::array<size_t, 3> size_{};
 };
 
+// Whether the corners of the kCells cells of a row that begin with a point all are on one side;
+// above: the same point in the next slice.
+constexpr size_t kCells = 8;
+bool on_one_side(const uint8_t* inside, const uint8_t* above, size_t row) {
+  constexpr uint64_t kAllInside = 0x0101010101010101;
+  uint64_t any = 0, all = kAllInside;
+  for (const uint8_t* corner : {inside, inside + 1, inside + row, inside + row + 1, above,
+                                above + 1, above + row, above + row + 1}) {
+    uint64_t word = 0;
+    std::memcpy(&word, corner, kCells);
+    any |= word;
+    all &= word;
+  }
+  return any == 0 || all == kAllInside;
+}
+
+// visit(x, y) for the cells between a slice and the next, `above`, but for many of those that the
+// surface does not cross.
+template <typename Visit>
+void visit_cells(const Lattice& lattice, const Vector<uint8_t>& inside,
+                 const Vector<uint8_t>& above, const Visit& visit) {
+  const size_t cells = lattice.columns() - 1;
+  for (size_t y = 0; y + 1 < lattice.rows(); ++y) {
+    for (size_t begin = 0; begin < cells; begin += kCells) {
+      const size_t i = lattice.point(begin, y);
+      const size_t end = std::min(begin + kCells, cells);
+      if (end - begin == kCells && on_one_side(&inside[i], &above[i], lattice.columns())) continue;
+      for (size_t x = begin; x < end; ++x) visit(x, y);
+    }
+  }
+}
+
 // visit(x, y, d) for every edge that begins in a slice and is crossed, in the order of ids. above:
-// the next slice.
+// the next slice. Points of the last row and column are outside, and so are those that they would
+// lead to.
 template <typename Visit>
 void visit_crossed(const Lattice& lattice, const Vector<uint8_t>& inside,
                    const Vector<uint8_t>& above, const Visit& visit) {
   const size_t nx = lattice.columns();
-  // Points of the last row and column are outside, and so are those that they would lead to.
-  for (size_t y = 0; y + 1 < lattice.rows(); ++y) {
-    for (size_t x = 0; x + 1 < nx; ++x) {
-      const size_t i = lattice.point(x, y);
-      const uint8_t own = inside[i];
-      const uint8_t others[kDirections] = {inside[i + 1],    inside[i + nx], inside[i + nx + 1],
-                                           above[i],         above[i + 1],   above[i + nx],
-                                           above[i + nx + 1]};
-      for (size_t d = 1; d <= kDirections; ++d) {
-        if (others[d - 1] != own) visit(x, y, d);
-      }
+  visit_cells(lattice, inside, above, [&](size_t x, size_t y) {
+    const size_t i = lattice.point(x, y);
+    const uint8_t own = inside[i];
+    const uint8_t others[kDirections] = {inside[i + 1],    inside[i + nx], inside[i + nx + 1],
+                                         above[i],         above[i + 1],   above[i + nx],
+                                         above[i + nx + 1]};
+    for (size_t d = 1; d <= kDirections; ++d) {
+      if (others[d - 1] != own) visit(x, y, d);
     }
-  }
+  });
 }
 
 // Ids of the edges that begin in one slice: [point][d - 1], written where an edge is crossed.
@@ -156,12 +181,17 @@ class Builder {
     faces_.resize(block_count(layers_, kLayers));
     for_layers([&](size_t block, size_t begin, size_t end) {
       EdgeIds lower, upper;
-      number(begin, lower);
+      Vector<uint8_t> above;
+      lattice_.classify(begin, lower.inside);
+      lattice_.classify(begin + 1, upper.inside);
+      number(begin, lower, upper.inside);
       for (size_t z = begin; z < end; ++z) {
-        place(z, lower);
-        number(z + 1, upper);
+        place(z, lower, upper.inside);
+        lattice_.classify(z + 2, above);
+        number(z + 1, upper, above);
         march(lower, upper, faces_[block]);
         std::swap(lower, upper);
+        upper.inside.swap(above);
       }
     });
     Vector<uint32_t> abc;
@@ -184,13 +214,9 @@ class Builder {
     run_blocks(executor_, layers_, kLayers, body);
   }
 
-  // The ids of the edges that begin in slice z, which may be the last.
-  void number(size_t z, EdgeIds& slice) const {
-    lattice_.classify(z, slice.inside);
-    if (z == layers_) return;  // all outside: no edge begins here
+  // The ids of the edges that begin in slice z, below `above`.
+  void number(size_t z, EdgeIds& slice, const Vector<uint8_t>& above) const {
     slice.ids.resize(lattice_.slice_points() * kDirections);
-    Vector<uint8_t> above;
-    lattice_.classify(z + 1, above);
     auto id = static_cast<uint32_t>(first_id_[z]);
     visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, size_t d) {
       slice.ids[lattice_.point(x, y) * kDirections + d - 1] = id++;
@@ -198,9 +224,7 @@ class Builder {
   }
 
   // The positions of the vertices of slice z.
-  void place(size_t z, const EdgeIds& slice) {
-    Vector<uint8_t> above;
-    lattice_.classify(z + 1, above);
+  void place(size_t z, const EdgeIds& slice, const Vector<uint8_t>& above) {
     size_t id = first_id_[z];
     visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, size_t d) {
       const Vec3 p = lattice_.crossing(x, y, z, d);
@@ -218,25 +242,23 @@ class Builder {
 
   void march(const EdgeIds& lower, const EdgeIds& upper, Vector<Face>& out) const {
     const size_t nx = lattice_.columns();
-    for (size_t y = 0; y + 1 < lattice_.rows(); ++y) {
-      for (size_t x = 0; x + 1 < nx; ++x) {
-        const size_t i = lattice_.point(x, y);
-        const size_t at[4] = {i, i + 1, i + nx, i + nx + 1};
-        uint32_t inside = 0;
-        for (uint32_t c = 0; c < 4; ++c) {
-          inside |= static_cast<uint32_t>(lower.inside[at[c]]) << c;
-          inside |= static_cast<uint32_t>(upper.inside[at[c]]) << (c + 4);
-        }
-        if (inside == 0 || inside == 255) continue;
-        // The vertex between two corners of a tetrahedron: one contains the bits of the other.
-        const auto between = [&](uint32_t p, uint32_t q) {
-          const uint32_t low = p & q;
-          const EdgeIds& slice = low < 4 ? lower : upper;
-          return slice.ids[at[low & 3] * kDirections + (p ^ q) - 1];
-        };
-        for (const auto& tetrahedron : kTetrahedra) cut(tetrahedron, inside, between, out);
+    visit_cells(lattice_, lower.inside, upper.inside, [&](size_t x, size_t y) {
+      const size_t i = lattice_.point(x, y);
+      const size_t at[4] = {i, i + 1, i + nx, i + nx + 1};
+      uint32_t inside = 0;
+      for (uint32_t c = 0; c < 4; ++c) {
+        inside |= static_cast<uint32_t>(lower.inside[at[c]]) << c;
+        inside |= static_cast<uint32_t>(upper.inside[at[c]]) << (c + 4);
       }
-    }
+      if (inside == 0 || inside == 255) return;
+      // The vertex between two corners of a tetrahedron: one contains the bits of the other.
+      const auto between = [&](uint32_t p, uint32_t q) {
+        const uint32_t low = p & q;
+        const EdgeIds& slice = low < 4 ? lower : upper;
+        return slice.ids[at[low & 3] * kDirections + (p ^ q) - 1];
+      };
+      for (const auto& tetrahedron : kTetrahedra) cut(tetrahedron, inside, between, out);
+    });
   }
 
   // The one or two faces in a tetrahedron, away from its corners that are inside.
@@ -285,7 +307,11 @@ Status iso_surface(const ImageObject& object, const LatticeValues& values, const
 Status iso_surface(const ImageObject& object, const Executor& executor, Mesh& mesh) {
   const ImageView& image = object.image;
   const LatticeValues values{
-      [&](int32_t y, int32_t z, float* row) { image_row(image, y, z, row); },
+      [&](int32_t y, int32_t z, uint8_t* inside) {
+        Vector<float> row(static_cast<size_t>(image.dims[0]));
+        image_row(image, y, z, row.data());
+        for (size_t x = 0; x < row.size(); ++x) inside[x] = object.has(row[x]);
+      },
       [&](int32_t x, int32_t y, int32_t z) { return image_value(image, x, y, z); }};
   return iso_surface(object, values, executor, mesh);
 }

@@ -33,14 +33,16 @@ inline constexpr double kIsoMargin = 0.1;
 // vertices than ids have room for; throws std::bad_alloc.
 Status iso_surface(const ImageObject& object, const Executor& executor, Mesh& mesh);
 
-// Values that are computed as they are asked for, by any thread: x fastest, as an image's.
+// Values that are computed as they are asked for, by any thread.
 struct LatticeValues {
-  std::function<void(int32_t y, int32_t z, float* values)> row;
-  std::function<float(int32_t x, int32_t y, int32_t z)> at;  // the same values
+  // Of each x of a row, x growing: 1 where it is inside, 0 where not.
+  std::function<void(int32_t y, int32_t z, uint8_t* inside)> sides;
+  // Asked for at the ends of edges that lead from one side to the other.
+  std::function<float(int32_t x, int32_t y, int32_t z)> at;
 };
 
-// The same of such values; of the image dims, scale and offset are read alone. `voxel` gets, for
-// each vertex, a number of the voxel inside on whose edge it lies.
+// The same of such values; of the object the image's dims, scale and offset are read, and iso.
+// `voxel` gets, for each vertex, a number of the voxel inside on whose edge it lies.
 Status iso_surface(const ImageObject& object, const LatticeValues& values, const Executor& executor,
                    Mesh& mesh, Vector<uint64_t>* voxel = nullptr);
 

@@ -37,7 +37,7 @@ class Cutout {
   }
   ImageObject object() const { return {view_, 0, true}; }  // dims, scale and offset
   LatticeValues values() const {
-    return {[this](int32_t y, int32_t z, float* row) { read_row(y, z, row); },
+    return {[this](int32_t y, int32_t z, uint8_t* inside) { find_sides(y, z, inside); },
             [this](int32_t x, int32_t y, int32_t z) { return value(x, y, z); }};
   }
 
@@ -46,32 +46,25 @@ class Cutout {
 
   // How far a value lies on the object's side of iso, for parts; on the other, for cavities.
   float depth(float value) const { return up_ ? value - iso_ : iso_ - value; }
-  static float outside(float depth) { return -std::max(std::abs(depth), kLeast); }
-  static float inside(float depth) { return std::max(depth, 0.0F); }
 
   bool in_image(const Voxel& v) const {
     return v[0] >= 0 && v[1] >= 0 && v[2] >= 0 && v[0] < image_.dims[0] && v[1] < image_.dims[1] &&
            v[2] < image_.dims[2];
   }
+  // Above 0 inside, or 0; below 0 outside.
   float value(int32_t x, int32_t y, int32_t z) const {
     const Voxel v{x + first_[0], y + first_[1], z + first_[2]};
     if (!in_image(v)) return -1;
     const float d = depth(image_value(image_, v[0], v[1], v[2]));
-    return voxels_.has(v) ? inside(d) : outside(d);
+    return voxels_.has(v) ? std::max(d, 0.0F) : -std::max(std::abs(d), kLeast);
   }
-  void read_row(int32_t y, int32_t z, float* values) const {
-    const int32_t width = view_.dims[0];
+  void find_sides(int32_t y, int32_t z, uint8_t* inside) const {
     const int32_t row = y + first_[1], plane = z + first_[2];
-    std::fill_n(values, width, -1.0F);
+    std::fill_n(inside, view_.dims[0], uint8_t{0});
     if (!in_image({0, row, plane})) return;
     const int32_t begin = std::max(first_[0], 0);
-    const int32_t end = std::min(first_[0] + width, image_.dims[0]);
-    Vector<float> own(static_cast<size_t>(end - begin));
-    image_row(image_, row, plane, begin, end, own.data());
-    const auto to = [&](int32_t x) -> float& { return values[x - first_[0]]; };
-    const auto at = [&](int32_t x) { return depth(own[static_cast<size_t>(x - begin)]); };
-    for (int32_t x = begin; x < end; ++x) to(x) = outside(at(x));
-    voxels_.visit_row(row, plane, begin, end, [&](int32_t x) { to(x) = inside(at(x)); });
+    const int32_t end = std::min(first_[0] + view_.dims[0], image_.dims[0]);
+    voxels_.visit_row(row, plane, begin, end, [&](int32_t x) { inside[x - first_[0]] = 1; });
   }
 
   const ImageView& image_;

@@ -235,10 +235,10 @@ Status coarse_iso_surface(const ImageObject& object, const std::array<int32_t, 3
     return image_value(view, int64_t{x} * stride[0], int64_t{y} * stride[1],
                        int64_t{z} * stride[2]);
   };
-  const auto row = [&](int32_t y, int32_t z, float* values) {
-    for (int32_t x = 0; x < coarse.dims[0]; ++x) values[x] = at(x, y, z);
+  const auto sides = [&](int32_t y, int32_t z, uint8_t* inside) {
+    for (int32_t x = 0; x < coarse.dims[0]; ++x) inside[x] = object.has(at(x, y, z));
   };
-  return iso_surface({coarse, object.iso, object.above}, {row, at}, executor, mesh);
+  return iso_surface({coarse, object.iso, object.above}, {sides, at}, executor, mesh);
 }
 
 // An image without the object is no error: the next finer level may show it.

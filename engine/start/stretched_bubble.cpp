@@ -52,9 +52,9 @@ Status make_stretched_bubble(Mesh& mesh, const std::array<double, 3>& middle,
   const auto value = [&](int32_t x, int32_t y, int32_t z) {
     return static_cast<float>(1 - term(0, x) - term(1, y) - term(2, z));
   };
-  const LatticeValues values{[&](int32_t y, int32_t z, float* row) {
+  const LatticeValues values{[&](int32_t y, int32_t z, uint8_t* inside) {
                                for (int32_t x = 0; x < lattice.dims[0]; ++x)
-                                 row[x] = value(x, y, z);
+                                 inside[x] = value(x, y, z) >= 0;
                              },
                              value};
   if (Status s = iso_surface({lattice, 0, true}, values, schedule, mesh); !s.ok()) return s;

@@ -14,6 +14,11 @@ namespace {
 using plc::Double3;
 
 constexpr int kSteps = 4;  // of Newton
+constexpr float kHalf = 0.5F;
+
+uint8_t is_inside(float value) {
+  return value >= kHalf;
+}
 
 // Where `values`, one per node, are 1/2, inside above it; vertices brought to the surface by
 // step(), which tells where to from a place.
@@ -22,7 +27,7 @@ Surface marched(const FineField& field, const plc::LatticeValues& values,
   plc::ImageView image;
   for (size_t a = 0; a < 3; ++a) image.dims[a] = static_cast<int32_t>(field.nodes()[a]);
   plc::Mesh mesh;
-  const plc::Status status = plc::iso_surface({image, 0.5F, true}, values, executor, mesh);
+  const plc::Status status = plc::iso_surface({image, kHalf, true}, values, executor, mesh);
   if (status.code() == plc::ErrorCode::kInvalidData) return {};
   if (!status.ok()) throw plc::tools::Failure{status.message()};
 
@@ -89,9 +94,11 @@ Surface object_surface(const Scene& scene, const FineField& field, const plc::Ex
   const auto row = [&](int32_t y, int32_t z) {
     return values.data() + (static_cast<size_t>(z) * nodes[1] + static_cast<size_t>(y)) * nodes[0];
   };
-  const plc::LatticeValues lattice{
-      [&](int32_t y, int32_t z, float* to) { std::copy_n(row(y, z), nodes[0], to); },
-      [&](int32_t x, int32_t y, int32_t z) { return row(y, z)[x]; }};
+  const plc::LatticeValues lattice{[&](int32_t y, int32_t z, uint8_t* inside) {
+                                     std::transform(row(y, z), row(y, z) + nodes[0], inside,
+                                                    is_inside);
+                                   },
+                                   [&](int32_t x, int32_t y, int32_t z) { return row(y, z)[x]; }};
   return marched(field, lattice, executor, [&](const Double3& p) {
     return p - object_normal(scene, p) * scene.signed_distance(p);
   });
@@ -101,9 +108,11 @@ Surface iso_surface(const FineField& field, const plc::Executor& executor) {
   const auto row = [&](int32_t y, int32_t z) {
     return field.row(static_cast<size_t>(y), static_cast<size_t>(z));
   };
-  const plc::LatticeValues lattice{
-      [&](int32_t y, int32_t z, float* to) { std::copy_n(row(y, z), field.nodes()[0], to); },
-      [&](int32_t x, int32_t y, int32_t z) { return row(y, z)[x]; }};
+  const plc::LatticeValues lattice{[&](int32_t y, int32_t z, uint8_t* inside) {
+                                     std::transform(row(y, z), row(y, z) + field.nodes()[0], inside,
+                                                    is_inside);
+                                   },
+                                   [&](int32_t x, int32_t y, int32_t z) { return row(y, z)[x]; }};
   return marched(field, lattice, executor, [&](const Double3& p) {
     constexpr double kLongestStep = 0.1;  // mm
     const Double3 gradient = field.gradient(p);

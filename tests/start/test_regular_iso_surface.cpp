@@ -28,7 +28,10 @@ struct Both {
 Both surfaces_of(const samples::Volume& volume, float iso, int threads = 1) {
   const plc::ImageView view = view_of(volume);
   const plc::LatticeValues values{
-      [&](int32_t y, int32_t z, float* row) { plc::image_row(view, y, z, row); },
+      [&](int32_t y, int32_t z, uint8_t* inside) {
+        for (int32_t x = 0; x < view.dims[0]; ++x)
+          inside[x] = plc::image_value(view, x, y, z) >= iso;
+      },
       [&](int32_t x, int32_t y, int32_t z) { return plc::image_value(view, x, y, z); }};
   const plc::Schedule schedule(threads);
   Both both;
