@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -118,29 +119,40 @@ void visit_cells(const Lattice& lattice, const Vector<uint8_t>& inside,
   }
 }
 
-// visit(x, y, d) for every edge that begins in a slice and is crossed, in the order of ids. above:
-// the next slice. Points of the last row and column are outside, and so are those that they would
-// lead to.
+// visit(x, y, crossed) for the points of a slice at which edges begin that are crossed, in the
+// order of ids: bit d - 1 of `crossed` is set for the edge of direction d. above: the next slice.
+// Points of the last row and column are outside, and so are those that they would lead to.
 template <typename Visit>
 void visit_crossed(const Lattice& lattice, const Vector<uint8_t>& inside,
                    const Vector<uint8_t>& above, const Visit& visit) {
   const size_t nx = lattice.columns();
   visit_cells(lattice, inside, above, [&](size_t x, size_t y) {
     const size_t i = lattice.point(x, y);
-    const uint8_t own = inside[i];
     const uint8_t others[kDirections] = {inside[i + 1],    inside[i + nx], inside[i + nx + 1],
                                          above[i],         above[i + 1],   above[i + nx],
                                          above[i + nx + 1]};
-    for (size_t d = 1; d <= kDirections; ++d) {
-      if (others[d - 1] != own) visit(x, y, d);
+    uint32_t crossed = 0;
+    for (uint32_t k = 0; k < kDirections; ++k) {
+      crossed |= static_cast<uint32_t>(others[k] != inside[i]) << k;
     }
+    if (crossed != 0) visit(x, y, crossed);
   });
 }
 
-// Ids of the edges that begin in one slice: [point][d - 1], written where an edge is crossed.
-struct EdgeIds {
+size_t count_of(uint32_t bits) {
+  return static_cast<size_t>(std::popcount(bits));
+}
+
+// The points of one slice. Of those at which crossed edges begin: which, and the id of the first.
+struct Slice {
   Vector<uint8_t> inside;
-  Vector<uint32_t> ids;
+  Vector<uint8_t> crossed;
+  Vector<uint32_t> first;
+
+  uint32_t id(size_t point, uint32_t d) const {
+    const uint32_t before = crossed[point] & ((1U << (d - 1)) - 1);
+    return first[point] + static_cast<uint32_t>(count_of(before));
+  }
 };
 
 class Builder {
@@ -157,7 +169,9 @@ class Builder {
       lattice_.classify(begin, inside);
       for (size_t z = begin; z < end; ++z) {
         lattice_.classify(z + 1, above);
-        visit_crossed(lattice_, inside, above, [&](size_t, size_t, size_t) { ++first_id_[z + 1]; });
+        visit_crossed(lattice_, inside, above, [&](size_t, size_t, uint32_t crossed) {
+          first_id_[z + 1] += count_of(crossed);
+        });
         inside.swap(above);
       }
     });
@@ -180,7 +194,7 @@ class Builder {
     xyz_.resize(3 * vertex_count());
     faces_.resize(block_count(layers_, kLayers));
     for_layers([&](size_t block, size_t begin, size_t end) {
-      EdgeIds lower, upper;
+      Slice lower, upper;
       Vector<uint8_t> above;
       lattice_.classify(begin, lower.inside);
       lattice_.classify(begin + 1, upper.inside);
@@ -215,32 +229,37 @@ class Builder {
   }
 
   // The ids of the edges that begin in slice z, below `above`.
-  void number(size_t z, EdgeIds& slice, const Vector<uint8_t>& above) const {
-    slice.ids.resize(lattice_.slice_points() * kDirections);
+  void number(size_t z, Slice& slice, const Vector<uint8_t>& above) const {
+    slice.crossed.resize(lattice_.slice_points());
+    slice.first.resize(lattice_.slice_points());
     auto id = static_cast<uint32_t>(first_id_[z]);
-    visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, size_t d) {
-      slice.ids[lattice_.point(x, y) * kDirections + d - 1] = id++;
+    visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, uint32_t crossed) {
+      const size_t point = lattice_.point(x, y);
+      slice.crossed[point] = static_cast<uint8_t>(crossed);
+      slice.first[point] = id;
+      id += static_cast<uint32_t>(count_of(crossed));
     });
   }
 
   // The positions of the vertices of slice z.
-  void place(size_t z, const EdgeIds& slice, const Vector<uint8_t>& above) {
+  void place(size_t z, const Slice& slice, const Vector<uint8_t>& above) {
     size_t id = first_id_[z];
-    visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, size_t d) {
-      const Vec3 p = lattice_.crossing(x, y, z, d);
-      xyz_[3 * id] = p.x, xyz_[3 * id + 1] = p.y, xyz_[3 * id + 2] = p.z;
-      if (voxel_ != nullptr) {
-        const bool here = slice.inside[lattice_.point(x, y)] != 0;
+    visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, uint32_t crossed) {
+      const bool here = slice.inside[lattice_.point(x, y)] != 0;
+      for (; crossed != 0; crossed &= crossed - 1, ++id) {
+        const auto d = static_cast<size_t>(std::countr_zero(crossed)) + 1;
+        const Vec3 p = lattice_.crossing(x, y, z, d);
+        xyz_[3 * id] = p.x, xyz_[3 * id + 1] = p.y, xyz_[3 * id + 2] = p.z;
+        if (voxel_ == nullptr) continue;
         const size_t in_slice =
             here ? lattice_.point(x, y) : lattice_.point(x + (d & 1), y + (d >> 1 & 1));
         const size_t slices_up = here ? 0 : d >> 2 & 1;
         (*voxel_)[id] = uint64_t{z + slices_up} * lattice_.slice_points() + in_slice;
       }
-      ++id;
     });
   }
 
-  void march(const EdgeIds& lower, const EdgeIds& upper, Vector<Face>& out) const {
+  void march(const Slice& lower, const Slice& upper, Vector<Face>& out) const {
     const size_t nx = lattice_.columns();
     visit_cells(lattice_, lower.inside, upper.inside, [&](size_t x, size_t y) {
       const size_t i = lattice_.point(x, y);
@@ -254,8 +273,8 @@ class Builder {
       // The vertex between two corners of a tetrahedron: one contains the bits of the other.
       const auto between = [&](uint32_t p, uint32_t q) {
         const uint32_t low = p & q;
-        const EdgeIds& slice = low < 4 ? lower : upper;
-        return slice.ids[at[low & 3] * kDirections + (p ^ q) - 1];
+        const Slice& slice = low < 4 ? lower : upper;
+        return slice.id(at[low & 3], p ^ q);
       };
       for (const auto& tetrahedron : kTetrahedra) cut(tetrahedron, inside, between, out);
     });
