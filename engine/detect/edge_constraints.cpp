@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/base/constants.h"
+#include "engine/detect/denied_cycles.h"
 #include "engine/transform/deletion.h"
 #include "engine/transform/inversion.h"
 
@@ -26,17 +27,6 @@ std::optional<uint32_t> shortest_cycle(const Mesh& mesh, const Edge& e) {
   return best;
 }
 
-// Whether the image says that what the cycle u, v, o goes around is what the surface says it is.
-bool tube_is_there(const Mesh& mesh, const Edge& e, uint32_t o) {
-  if (mesh.sizing == nullptr) return false;
-  const Vec3 centre = (mesh.at(e.u) + mesh.at(e.v) + mesh.at(o)) * (1.0F / 3.0F);
-  float outward = 0;
-  for (const uint32_t v : {e.u, e.v, o}) {
-    outward += dot(vertex_normal(mesh, v), mesh.at(v) - centre);
-  }
-  return mesh.sizing->inside(centre) == (outward > 0);
-}
-
 bool should_invert(const Mesh& mesh, const Edge& e, float squared_length) {
   const float delta = mesh.size_between(e.u, e.v);
   const Vec3 middle = midpoint(mesh.at(e.u), mesh.at(e.v));
@@ -57,8 +47,9 @@ std::optional<Candidate> edge_candidate(const Mesh& mesh, uint32_t u, uint32_t k
   const float l2 = squared_distance(mesh.at(u), mesh.at(e.v));
   if (l2 <= shortest) {
     if (const auto o = shortest_cycle(mesh, e)) {
-      if (tube_is_there(mesh, e, *o)) return std::nullopt;
-      return Candidate{Operation::kAnnular, l2, {e.u, e.v, *o, e.b}};
+      const Cycle cycle{{e.u, e.v, *o}};
+      if (mesh.sizing != nullptr && image_has(mesh, cycle)) return std::nullopt;
+      return cut_along(cycle, l2);
     }
     return Candidate{Operation::kDeletion, l2, e};
   }

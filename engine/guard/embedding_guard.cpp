@@ -142,36 +142,35 @@ Proposal propose_deletion(const Mesh& mesh, const Edge& e, Vec3 place) {
   return proposal;
 }
 
-Proposal propose_annular(const Mesh& mesh, const Cycle& cycle,
-                         const std::array<CutCopy, 6>& copies) {
+Proposal propose_annular(const Mesh& mesh, const Cycle& cycle, const CutCopies& copies) {
   Proposal proposal;
-  const uint32_t fresh = mesh.slots();
-  const auto id = [&](uint32_t copy) { return copy < 3 ? cycle.corner[copy] : fresh + copy - 3; };
-  for (uint32_t copy = 0; copy < 6; ++copy) {
-    const uint32_t i = copy % 3;
-    const uint32_t side = copy - i;
-    // The ring of a left copy is next, arc, previous; of a right one previous, arc, next.
-    const uint32_t first = side + (side == 0 ? (i + 1) % 3 : (i + 2) % 3);
-    const uint32_t last = side + (side == 0 ? (i + 2) % 3 : (i + 1) % 3);
-    Vector<uint32_t> ring{id(first)};
-    Vector<Vec3> place{copies[first].place};
-    for (const uint32_t w : copies[copy].arc) {
-      ring.push_back(w);
-      place.push_back(mesh.at(w));
+  const uint32_t size = cycle.size;
+  for (uint32_t side = 0; side < 2; ++side) {
+    const auto corner = [&](uint32_t i) {
+      return std::pair(side == 0 ? cycle.corner[i] : mesh.slots() + i, copies[side][i].place);
+    };
+    const auto add = [&](const auto& a, const auto& b, const auto& c) {
+      proposal.faces.push_back({{a.first, b.first, c.first}, {a.second, b.second, c.second}});
+    };
+    for (uint32_t i = 0; i < size; ++i) {
+      // The ring of a left copy is next, arc, previous; of a right one previous, arc, next. The
+      // face of a copy and the last comes from the last.
+      auto before = corner(side == 0 ? cycle.next(i) : cycle.previous(i));
+      for (const uint32_t w : copies[side][i].arc) {
+        const std::pair of_arc(w, mesh.at(w));
+        add(corner(i), before, of_arc);
+        before = of_arc;
+      }
     }
-    ring.push_back(id(last));
-    place.push_back(copies[last].place);
-    // Faces with several copies come from the copy that has the face's first edge to another copy.
-    for (size_t k = 0; k < ring.size(); ++k) {
-      const size_t next = (k + 1) % ring.size();
-      const bool closing = next == 0;            // the triangle that closes the hole
-      const bool shared = k + 2 == ring.size();  // (copy, arc's end, last): also seen from last
-      if ((closing && i != 0) || shared) continue;
-      proposal.faces.push_back(
-          {{id(copy), ring[k], ring[next]}, {copies[copy].place, place[k], place[next]}});
+    for (uint32_t i = 2; i < size; ++i) {
+      if (side == 0) {
+        add(corner(0), corner(i), corner(i - 1));
+      } else {
+        add(corner(0), corner(i - 1), corner(i));
+      }
     }
   }
-  proposal.removed_corners.assign(cycle.corner.begin(), cycle.corner.end());
+  proposal.removed_corners.assign(cycle.corner.begin(), cycle.corner.begin() + size);
   return proposal;
 }
 

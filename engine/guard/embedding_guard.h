@@ -43,8 +43,7 @@ struct Proposal {
 Proposal propose_creation(const Mesh& mesh, const Edge& edge);
 Proposal propose_inversion(const Mesh& mesh, const Edge& edge);
 Proposal propose_deletion(const Mesh& mesh, const Edge& edge, Vec3 place);
-Proposal propose_annular(const Mesh& mesh, const Cycle& cycle,
-                         const std::array<CutCopy, 6>& copies);
+Proposal propose_annular(const Mesh& mesh, const Cycle& cycle, const CutCopies& copies);
 Proposal propose_axial(const Mesh& mesh, const AxialPlan& plan);
 
 // Keeps its buffers from call to call; not thread-safe.

@@ -17,7 +17,9 @@
 // motion/travel.h.
 //
 // What has turned kFreeTurns times is not cut any more, and what is frozen not joined
-// (transform/candidate.h): thin parts that break and grow again end as one piece.
+// (transform/candidate.h): thin parts that break and grow again end as one piece. In an adaptive
+// mesh only what the image does not have is cut, whatever has turned; without joins, which end,
+// cuts end.
 //
 // One byte of a stream of the mesh: the number of turns, and above it the side of the last
 // movement, 1 outwards, 2 inwards, 0 none yet.

@@ -144,7 +144,10 @@ Status Recovery::adapt() {
   mesh_.delta = target;
   if (Status s = build_sizing(); !s.ok()) return s;
   resize_all();
-  for (uint32_t v = 0; v < mesh_.slots(); ++v) mesh_.turns[v] = 0;
+  for (uint32_t v = 0; v < mesh_.slots(); ++v) {
+    mesh_.wake(v);
+    mesh_.turns[v] = 0;
+  }
   evolution_.restart();
   evolution_.notify("refinement");
   if (mesh_.sizing != nullptr || mesh_.is_patch()) {

@@ -135,10 +135,14 @@ void Recovery::lower_sizes() {
   sizing_.field.bound_slope();
 }
 
+// What has another size than before starts anew: it is awake, and has not turned.
 void Recovery::resize_all() {
   for (uint32_t v = 0; v < mesh_.slots(); ++v) {
+    const float before = mesh_.size(v);
     if (mesh_.alive(v)) mesh_.resize(v);
+    if (mesh_.size(v) == before) continue;
     mesh_.wake(v);
+    mesh_.turns[v] = 0;
   }
 }
 

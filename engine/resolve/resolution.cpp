@@ -9,6 +9,7 @@
 #include "engine/base/blocks.h"
 #include "engine/base/constants.h"
 #include "engine/base/parallel_sort.h"
+#include "engine/detect/denied_cycles.h"
 #include "engine/detect/edge_constraints.h"
 #include "engine/detect/proximity.h"
 #include "engine/guard/obstacles.h"
@@ -174,6 +175,7 @@ Vector<Candidate> Resolution::edge_candidates(const Vector<uint32_t>& queue) {
       }
       if (const auto candidate = edge_candidate(mesh_, from, slot)) out.push_back(*candidate);
     }
+    if (const auto candidate = denied_cycle(mesh_, u)) out.push_back(*candidate);
   };
   return collect_sorted(executor_, queue.size(), kChunk, std::less<Candidate>(), collect);
 }
@@ -288,7 +290,10 @@ void Resolution::apply_in_turn(const Candidate& candidate, size_t trial, Vector<
 bool Resolution::free_footprint(const Candidate& candidate, uint32_t claim) {
   const Edge& e = candidate.edge;
   uint32_t corners[4] = {e.u, e.v, e.u, e.u};
-  if (candidate.operation == Operation::kAnnular) corners[2] = e.a;
+  if (candidate.operation == Operation::kAnnular) {
+    const Cycle cycle = candidate.cycle();
+    std::copy_n(cycle.corner.begin(), cycle.size, corners);
+  }
   if (candidate.operation == Operation::kInversion) {
     corners[2] = e.a;
     corners[3] = e.b;

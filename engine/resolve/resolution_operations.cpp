@@ -91,12 +91,11 @@ bool Resolution::apply_deletion(const Candidate& candidate, size_t trial, Operat
 }
 
 bool Resolution::apply_annular(const Candidate& candidate) {
-  const Edge& e = candidate.edge;
-  const Cycle cycle{{e.u, e.v, e.a}};
+  const Cycle cycle = candidate.cycle();
   const auto copies = annular_copies(mesh_, cycle, kAnnularRetreat);
   if (!guard_.embeds(mesh_, detection_.hash(), propose_annular(mesh_, cycle, copies))) return false;
   const auto right = cut_cycle(mesh_, cycle, copies, next_cut_++, iteration_);
-  for (uint32_t i = 0; i < 3; ++i) {
+  for (uint32_t i = 0; i < cycle.size; ++i) {
     inherit_operations(right[i], cycle.corner[i]);
     for (const uint32_t v : {cycle.corner[i], right[i]}) {
       enter_and_check(v);

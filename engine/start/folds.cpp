@@ -4,35 +4,9 @@
 #include <cmath>
 
 #include "engine/base/constants.h"
-#include "engine/base/vec3.h"
+#include "engine/transform/edge.h"
 
 namespace plc {
-
-namespace {
-
-// visit(normal, as long as twice the area) for the faces of a vertex.
-template <typename Visit>
-void visit_normals(const Mesh& mesh, uint32_t v, const Visit& visit) {
-  const uint32_t count = mesh.valence(v);
-  const Vec3 p = mesh.at(v);
-  Vec3 before = mesh.at(mesh.neighbor(v, count - 1)) - p;
-  for (uint32_t k = 0; k < count; ++k) {
-    const Vec3 next = mesh.at(mesh.neighbor(v, k)) - p;
-    visit(cross(before, next));
-    before = next;
-  }
-}
-
-bool is_fold(const Mesh& mesh, uint32_t v) {
-  Vec3 sum;
-  visit_normals(mesh, v, [&](Vec3 n) { sum = sum + n; });
-  bool fold = false;
-  visit_normals(
-      mesh, v, [&](Vec3 n) { fold = fold || dot(n, sum) < kFoldCosine * length(n) * length(sum); });
-  return fold;
-}
-
-}  // namespace
 
 bool find_folds(const Mesh& mesh, const ImageView& image, VoxelSet& folds) {
   // Sizes are whole steps.
@@ -40,7 +14,7 @@ bool find_folds(const Mesh& mesh, const ImageView& image, VoxelSet& folds) {
   bool any = false;
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     if (!mesh.alive(v) || mesh.is_absent(v) || mesh.position[v].w <= least) continue;
-    if (!is_fold(mesh, v)) continue;
+    if (!bends(mesh, v, kFoldCosine)) continue;
     const Vec3 p = mesh.at(v);
     const float xyz[3] = {p.x, p.y, p.z};
     Voxel at;

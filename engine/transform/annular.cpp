@@ -6,9 +6,6 @@
 
 namespace plc {
 
-namespace {
-
-// The neighbours of v strictly between `from` and `to`, counter-clockwise.
 Neighbors arc_between(const Mesh& mesh, uint32_t v, uint32_t from, uint32_t to) {
   const Neighbors ring = mesh.ring(v);
   assert(ring.contains(from) && ring.contains(to) && from != to);
@@ -20,6 +17,8 @@ Neighbors arc_between(const Mesh& mesh, uint32_t v, uint32_t from, uint32_t to) 
   }
 }
 
+namespace {
+
 Vec3 retreated(const Mesh& mesh, uint32_t v, const Neighbors& arc, float retreat) {
   assert(arc.size() > 0);  // else the cycle is a face
   Vec3 mean;
@@ -30,50 +29,51 @@ Vec3 retreated(const Mesh& mesh, uint32_t v, const Neighbors& arc, float retreat
 
 }  // namespace
 
-std::array<CutCopy, 6> annular_copies(const Mesh& mesh, const Cycle& cycle, float retreat) {
-  std::array<CutCopy, 6> copies;
-  for (uint32_t i = 0; i < 3; ++i) {
+CutCopies annular_copies(const Mesh& mesh, const Cycle& cycle, float retreat) {
+  CutCopies copies;
+  for (uint32_t i = 0; i < cycle.size; ++i) {
     const uint32_t v = cycle.corner[i];
-    const uint32_t next = cycle.corner[(i + 1) % 3];
-    const uint32_t previous = cycle.corner[(i + 2) % 3];
-    copies[i].arc = arc_between(mesh, v, next, previous);
-    copies[i + 3].arc = arc_between(mesh, v, previous, next);
-    for (CutCopy* copy : {&copies[i], &copies[i + 3]}) {
-      copy->place = retreated(mesh, v, copy->arc, retreat);
-    }
+    const uint32_t next = cycle.corner[cycle.next(i)];
+    const uint32_t previous = cycle.corner[cycle.previous(i)];
+    copies[0][i].arc = arc_between(mesh, v, next, previous);
+    copies[1][i].arc = arc_between(mesh, v, previous, next);
+    for (auto& side : copies) side[i].place = retreated(mesh, v, side[i].arc, retreat);
   }
   return copies;
 }
 
-std::array<uint32_t, 3> cut_cycle(Mesh& mesh, const Cycle& cycle,
-                                  const std::array<CutCopy, 6>& copies, uint32_t cut_id,
-                                  uint32_t iteration) {
-  std::array<uint32_t, 3> right{};
-  for (uint32_t i = 0; i < 3; ++i) {
-    const uint32_t v = cycle.corner[i];
-    right[i] = mesh.create(copies[i + 3].place, mesh.velocity.at(v));
+std::array<uint32_t, Cycle::kMost> cut_cycle(Mesh& mesh, const Cycle& cycle,
+                                             const CutCopies& copies, uint32_t cut_id,
+                                             uint32_t iteration) {
+  const auto& left = cycle.corner;
+  std::array<uint32_t, Cycle::kMost> right{};
+  for (uint32_t i = 0; i < cycle.size; ++i) {
+    const uint32_t v = left[i];
+    right[i] = mesh.create(copies[1][i].place, mesh.velocity.at(v));
     mesh.turns[v] = turned(mesh.turns[v], kTransformationTurns);
     mesh.turns[right[i]] = with_turns(0, turns_of(mesh.turns[v]));
   }
-  for (uint32_t i = 0; i < 3; ++i) {
-    const uint32_t v = cycle.corner[i];
-    for (const uint32_t w : copies[i + 3].arc) mesh.replace(w, v, right[i]);
+  for (uint32_t i = 0; i < cycle.size; ++i) {
+    for (const uint32_t w : copies[1][i].arc) mesh.replace(w, left[i], right[i]);
   }
-  for (uint32_t i = 0; i < 3; ++i) {
-    const uint32_t next = (i + 1) % 3;
-    const uint32_t previous = (i + 2) % 3;
+  for (uint32_t i = 0; i < cycle.size; ++i) {
+    const uint32_t next = cycle.next(i), previous = cycle.previous(i);
     Neighbors left_ring;
-    left_ring.push_back(cycle.corner[next]);
-    for (const uint32_t w : copies[i].arc) left_ring.push_back(w);
-    left_ring.push_back(cycle.corner[previous]);
+    left_ring.push_back(left[next]);
+    for (const uint32_t w : copies[0][i].arc) left_ring.push_back(w);
+    left_ring.push_back(left[previous]);
     Neighbors right_ring;
     right_ring.push_back(right[previous]);
-    for (const uint32_t w : copies[i + 3].arc) right_ring.push_back(w);
+    for (const uint32_t w : copies[1][i].arc) right_ring.push_back(w);
     right_ring.push_back(right[next]);
-    mesh.set_ring(cycle.corner[i], left_ring);
+    if (cycle.on_diagonal(i)) {
+      left_ring.push_back(left[(i + 2) % 4]);
+      right_ring.push_back(right[(i + 2) % 4]);
+    }
+    mesh.set_ring(left[i], left_ring);
     mesh.set_ring(right[i], right_ring);
-    mesh.place(cycle.corner[i], copies[i].place);
-    for (const uint32_t v : {cycle.corner[i], right[i]}) {
+    mesh.place(left[i], copies[0][i].place);
+    for (const uint32_t v : {left[i], right[i]}) {
       mesh.cut_id[v] = cut_id;
       mesh.cut_iteration[v] = iteration;
     }

@@ -11,9 +11,13 @@ namespace {
 // visit(v) for the vertices that a topological transformation takes apart.
 template <typename Visit>
 void visit_corners(const Candidate& candidate, const Visit& visit) {
+  if (candidate.operation == Operation::kAnnular) {
+    const Cycle cycle = candidate.cycle();
+    for (uint32_t i = 0; i < cycle.size; ++i) visit(cycle.corner[i]);
+    return;
+  }
   visit(candidate.edge.u);
   visit(candidate.edge.v);
-  if (candidate.operation == Operation::kAnnular) visit(candidate.edge.a);
 }
 
 }  // namespace
@@ -33,8 +37,11 @@ bool spares_held(const Mesh& mesh, const Candidate& candidate) {
       return !u && !v &&
              ((mesh.valence(e.a) > 3 && mesh.valence(e.b) > 3) ||
               (!mesh.is_held(e.a) && !mesh.is_held(e.b)));
-    case Operation::kAnnular:
-      return !u && !v && !mesh.is_held(e.a);
+    case Operation::kAnnular: {
+      bool held = false;
+      visit_corners(candidate, [&](uint32_t w) { held = held || mesh.is_held(w); });
+      return !held;
+    }
     case Operation::kAxial:
       break;
   }
@@ -45,6 +52,8 @@ bool goes_in_circles(const Mesh& mesh, const Candidate& candidate) {
   if (candidate.operation != Operation::kAnnular && candidate.operation != Operation::kAxial) {
     return false;
   }
+  // The image has said that what is cut is not there (edge_constraints.h).
+  if (mesh.sizing != nullptr && candidate.operation == Operation::kAnnular) return false;
   uint32_t turns = 0;
   visit_corners(candidate, [&](uint32_t v) { turns = std::max(turns, turns_of(mesh.turns[v])); });
   return turns >= (candidate.operation == Operation::kAnnular ? kFreeTurns : kFrozenTurns);

@@ -3,13 +3,14 @@
 #include <cstdint>
 #include <cstring>
 
+#include "engine/transform/annular.h"
 #include "engine/transform/edge.h"
 
 namespace plc {
 
 // In the order in which they are resolved: annular before axial (3.3).
 enum class Operation : uint8_t {
-  kAnnular,    // cycle u, v, a
+  kAnnular,    // cycle u, v, a, or u, v, a, b: see cycle()
   kDeletion,   // of edge u-v
   kInversion,  // of edge u-v
   kCreation,   // on edge u-v
@@ -31,6 +32,10 @@ struct Candidate {
   float key;  // squared length or distance; negated where the longest comes first
   Edge edge;
 
+  // Of an annular one. b is no vertex where the cycle has three edges.
+  static constexpr uint32_t kNoVertex = ~0U;
+  Cycle cycle() const { return {{edge.u, edge.v, edge.a, edge.b}, edge.b == kNoVertex ? 3U : 4U}; }
+
   // The total order of a pass: no two candidates of a pass compare equal.
   friend bool operator<(const Candidate& l, const Candidate& r) {
     const uint64_t of_l = l.rank(), of_r = r.rank();
@@ -48,5 +53,11 @@ struct Candidate {
   }
   uint64_t ends() const { return uint64_t{edge.u} << 32 | edge.v; }
 };
+
+// The key: squared length of an edge of it.
+inline Candidate cut_along(const Cycle& cycle, float key) {
+  const uint32_t last = cycle.size == 4 ? cycle.corner[3] : Candidate::kNoVertex;
+  return {Operation::kAnnular, key, {cycle.corner[0], cycle.corner[1], cycle.corner[2], last}};
+}
 
 }  // namespace plc

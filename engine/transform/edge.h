@@ -37,6 +37,9 @@ inline Vec3 area_vector(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) {
 // The sum of the area vectors around v, unit length, from the positions of now.
 Vec3 vertex_normal(const Mesh& mesh, uint32_t v);
 
+// Whether a face around v turns further from that than by the angle of the cosine.
+bool bends(const Mesh& mesh, uint32_t v, float cosine);
+
 // Whether the mesh has this edge, between these faces.
 inline bool has_edge(const Mesh& mesh, const Edge& e) {
   if (!mesh.alive(e.u) || !mesh.alive(e.v) || !mesh.adjacent(e.u, e.v)) return false;

@@ -191,7 +191,9 @@ TEST_CASE("where a surface was frozen is told, in every space", "[pellicle]") {
   samples::Volume volume = samples::noise(samples::empty_volume({26, 26, 26}), 3, 1);
   samples::add_noise(volume, 0.2, 2);
   const plc_image image = samples::image_of(volume);
-  const Surface noisy = samples::extract(context.get(), image, samples::parameters(0.5, 1));
+  plc_parameters uniform = samples::parameters(0.5, 1);
+  uniform.mesh = PLC_MESH_UNIFORM;
+  const Surface noisy = samples::extract(context.get(), image, uniform);
   int64_t count = 0;
   REQUIRE(plc_surface_frozen_sites(context.get(), noisy.get(), PLC_SPACE_LPS, nullptr, nullptr, 0,
                                    &count) == PLC_OK);

@@ -68,7 +68,7 @@ bool admitted(const Mesh& mesh, const plc::SpatialHash& hash, const plc::Candida
   };
   switch (c.operation) {
     case Operation::kAnnular: {
-      const plc::Cycle cycle{{e.u, e.v, e.a}};
+      const plc::Cycle cycle = c.cycle();
       const auto copies = plc::annular_copies(mesh, cycle, plc::kAnnularRetreat);
       return embeds(plc::propose_annular(mesh, cycle, copies));
     }

@@ -73,6 +73,21 @@ bool admitted(const Mesh& mesh, const Proposal& proposal) {
   return plc::EmbeddingGuard().embeds(mesh, hash, proposal);
 }
 
+// Those of three and of four edges that can be cut.
+std::vector<Cycle> cycles_over(const Mesh& mesh, const Edge& e) {
+  std::vector<Cycle> cycles;
+  for (const uint32_t o : plc::common_neighbors(mesh, e.u, e.v)) {
+    if (o != e.a && o != e.b) cycles.push_back({{e.u, e.v, o}});
+  }
+  for (const uint32_t a : mesh.ring(e.v)) {
+    for (const uint32_t b : mesh.ring(e.u)) {
+      if (a == e.u || b == e.v || mesh.adjacent(e.u, a) || mesh.adjacent(e.v, b)) continue;
+      if (mesh.adjacent(a, b)) cycles.push_back({{e.u, e.v, a, b}, 4});
+    }
+  }
+  return cycles;
+}
+
 // Proposes and carries out: visit(mesh before, proposal, apply).
 template <typename Visit>
 void for_each_operation(const Soup& soup, double delta, const Visit& visit) {
@@ -98,9 +113,7 @@ void for_each_operation(const Soup& soup, double delta, const Visit& visit) {
       visit(mesh, plc::propose_inversion(mesh, e), [&] { plc::invert_edge(mesh, e); });
       mesh.take(fresh());
     }
-    for (const uint32_t o : common) {
-      if (o == e.a || o == e.b) continue;
-      const Cycle cycle{{e.u, e.v, o}};
+    for (const Cycle& cycle : cycles_over(mesh, e)) {
       const auto copies = plc::annular_copies(mesh, cycle, plc::kAnnularRetreat);
       visit(mesh, plc::propose_annular(mesh, cycle, copies),
             [&] { plc::cut_cycle(mesh, cycle, copies, 1, 1); });

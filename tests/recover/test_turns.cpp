@@ -6,6 +6,7 @@
 #include "engine/motion/sleep.h"
 #include "engine/recover/frozen_sites.h"
 #include "tests/samples/sample_recovery.h"
+#include "tests/samples/sample_sizing.h"
 #include "tests/samples/sample_surfaces.h"
 
 namespace {
@@ -73,9 +74,15 @@ TEST_CASE("what goes round in circles is neither cut nor, frozen, joined; all el
   for (const Operation o : {Operation::kCreation, Operation::kDeletion, Operation::kInversion}) {
     CHECK_FALSE(asked(o, plc::kFrozenTurns));
   }
-  plc::freeze(mesh, {Operation::kAnnular, 1, {1, 2, 5, 4}});
+  const samples::FullImage image(true);
+  mesh.sizing = &image.sizing;  // that what is cut is not there is known
+  CHECK_FALSE(asked(Operation::kAnnular, plc::kFrozenTurns));
+  CHECK(asked(Operation::kAxial, plc::kFrozenTurns));
+  plc::freeze(mesh, plc::cut_along({{1, 2, 5}}, 1));
   for (const uint32_t v : {1U, 2U, 5U}) CHECK(plc::frozen(mesh.turns[v]));
   CHECK_FALSE(plc::frozen(mesh.turns[4]));
+  plc::freeze(mesh, plc::cut_along({{6, 7, 8, 9}, 4}, 1));
+  for (const uint32_t v : {6U, 7U, 8U, 9U}) CHECK(plc::frozen(mesh.turns[v]));
 }
 
 TEST_CASE("frozen vertices that edges connect are one site, the largest first", "[turns]") {

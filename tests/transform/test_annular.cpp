@@ -24,10 +24,8 @@ std::vector<Cycle> cycles_of(const Mesh& mesh) {
   return cycles;
 }
 
-std::array<uint32_t, 3> cut(Mesh& mesh, const Cycle& cycle, uint32_t id = 1,
-                            uint32_t iteration = 1) {
-  return plc::cut_cycle(mesh, cycle, plc::annular_copies(mesh, cycle, plc::kAnnularRetreat), id,
-                        iteration);
+void cut(Mesh& mesh, const Cycle& cycle) {
+  plc::cut_cycle(mesh, cycle, plc::annular_copies(mesh, cycle, plc::kAnnularRetreat), 1, 1);
 }
 
 }  // namespace
@@ -95,20 +93,23 @@ TEST_CASE("the copies retreat towards their own side and remember the cut", "[an
   // The middle cross-section, left side up or down.
   const Cycle cycle{{6, 7, 8}};
   const auto copies = plc::annular_copies(mesh, cycle, plc::kAnnularRetreat);
-  for (size_t i = 0; i < 6; ++i) {
-    const uint32_t v = cycle.corner[i % 3];
-    Vec3 mean;
-    for (const uint32_t w : copies[i].arc) {
-      mean = mean + mesh.at(w) * (1.0F / static_cast<float>(copies[i].arc.size()));
-      CHECK(mesh.adjacent(v, w));
-      CHECK(std::count(cycle.corner.begin(), cycle.corner.end(), w) == 0);
+  for (size_t i = 0; i < 3; ++i) {
+    const uint32_t v = cycle.corner[i];
+    for (const auto& side : copies) {
+      const plc::CutCopy& copy = side[i];
+      Vec3 mean;
+      for (const uint32_t w : copy.arc) {
+        mean = mean + mesh.at(w) * (1.0F / static_cast<float>(copy.arc.size()));
+        CHECK(mesh.adjacent(v, w));
+        CHECK(std::count(cycle.corner.begin(), cycle.corner.end(), w) == 0);
+      }
+      const Vec3 expected = mesh.at(v) + (mean - mesh.at(v)) * plc::kAnnularRetreat;
+      CHECK(plc::length(copy.place - expected) < 1e-6F);
+      const bool above = copy.arc[0] > 8;
+      CHECK((copy.place.z > 2) == above);
+      CHECK(above == (side[0].arc[0] > 8));
     }
-    const Vec3 expected = mesh.at(v) + (mean - mesh.at(v)) * plc::kAnnularRetreat;
-    CHECK(plc::length(copies[i].place - expected) < 1e-6F);
-    const bool above = copies[i].arc[0] > 8;
-    CHECK((copies[i].place.z > 2) == above);
-    CHECK(above == (copies[i < 3 ? 0 : 3].arc[0] > 8));
-    CHECK(copies[i].arc.size() + copies[(i + 3) % 6].arc.size() + 2 == mesh.valence(v));
+    CHECK(copies[0][i].arc.size() + copies[1][i].arc.size() + 2 == mesh.valence(v));
   }
   for (const uint32_t v : cycle.corner) {
     mesh.velocity.set(v, {static_cast<float>(v), 0, 1});
@@ -126,9 +127,34 @@ TEST_CASE("the copies retreat towards their own side and remember the cut", "[an
       CHECK(mesh.cut_iteration[copy] == 12);
       CHECK(mesh.valence(copy) >= 3);
     }
-    CHECK(plc::squared_distance(mesh.at(v), copies[i].place) == 0);
-    CHECK(plc::squared_distance(mesh.at(right[i]), copies[i + 3].place) == 0);
+    CHECK(plc::squared_distance(mesh.at(v), copies[0][i].place) == 0);
+    CHECK(plc::squared_distance(mesh.at(right[i]), copies[1][i].place) == 0);
     CHECK_FALSE(mesh.adjacent(v, right[i]));
+  }
+}
+
+TEST_CASE("a tube is cut along a cycle of four edges, closed by two faces on either side",
+          "[annular]") {
+  const samples::Soup soup = samples::tube(4, 5, 0.5);
+  for (uint32_t first = 0; first < 4; ++first) {
+    for (const uint32_t step : {1U, 3U}) {
+      Mesh mesh;
+      samples::fill_mesh(mesh, soup, 1);
+      // The middle cross-section.
+      Cycle cycle{{}, 4};
+      for (uint32_t i = 0; i < 4; ++i) cycle.corner[i] = 8 + (first + i * step) % 4;
+      const auto copies = plc::annular_copies(mesh, cycle, plc::kAnnularRetreat);
+      const auto right = plc::cut_cycle(mesh, cycle, copies, 1, 1);
+      REQUIRE(plc::broken_invariant(mesh) == "");
+      CHECK(samples::euler(mesh) == 4);
+      CHECK(samples::component_count(mesh) == 2);
+      CHECK(samples::meeting_count(mesh) == 0);
+      CHECK(samples::volume(mesh) > 0);
+      for (const auto& copy : {cycle.corner, right}) {
+        CHECK(mesh.adjacent(copy[0], copy[2]));
+        CHECK_FALSE(mesh.adjacent(copy[1], copy[3]));
+      }
+    }
   }
 }
 
