@@ -172,6 +172,11 @@ inline constexpr float kBubbleGap = 1.5F;
 // adaptive mesh are at most this, in delta: the border of a hole in a plate is nothing of the
 // image's, by which its edges would be long.
 inline constexpr float kLateSize = 1.25F;
+// ... and this where the full image is thinner than kThin delta along an axis: of eight images mean
+// distances to what comes out are smaller by a hundredth to a quarter, with 4 to 54 % more
+// vertices. On coarser levels it would be no nearer, but slower.
+inline constexpr float kThinSize = 0.7F;
+inline constexpr float kThin = 1;
 // Cosine of 60 degrees, by which a face turns from the normal at its corner where the surface
 // bends.
 inline constexpr float kFoldCosine = 0.5F;

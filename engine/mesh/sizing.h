@@ -10,6 +10,7 @@ namespace plc {
 struct Sizing {
   SizeField field;
   ImageObject object{};
+  bool full_image = false;  // of level 0
 
   // Whether the image says that a place of mesh space is the object's.
   bool inside(Vec3 p) const;

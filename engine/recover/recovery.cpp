@@ -364,7 +364,7 @@ Status Recovery::add_late_bubbles(bool& added) {
   const ImageObject object{guide_.image, *iso, spec_.inside_above};
   const MissedPlaces places = find_late_places(mesh_, object, schedule_, tried_, voxel_room());
   const bool adaptive = mesh_.sizing != nullptr;
-  const bool folded = adaptive && find_folds(mesh_, guide_.image, folds_);
+  const bool folded = adaptive && find_folds(mesh_, folds_);
   const bool lowered = folded || (adaptive && places.count != std::array<int64_t, 2>{0, 0});
   if (lowered) lower_sizes();
   if (Status s = start_late_bubbles(object, places, schedule_, mesh_, late, record().operations);

@@ -7,6 +7,7 @@
 #include "engine/base/constants.h"
 #include "engine/exact/predicates.h"
 #include "engine/recover/recovery.h"
+#include "engine/start/folds.h"
 #include "pyramid/gradient.h"
 
 namespace plc {
@@ -105,6 +106,7 @@ Status Recovery::build_sizing() {
   const std::optional<float> iso = iso_of(level_);
   if (!spec_.sizes || !iso) return {};
   sizing_.object = {guide_.image, *iso, spec_.inside_above};
+  sizing_.full_image = level_ == 0;
   // What is around a patch makes sizes fine beyond its room, too, as far as they grow from the
   // finest to the coarsest.
   VoxelRoom room = voxel_room();
@@ -130,7 +132,7 @@ Status Recovery::build_sizing() {
 // To those of late bubbles and folds, where the level has had some.
 void Recovery::lower_sizes() {
   for (const VoxelSet* voxels : {&tried_, &folds_}) {
-    voxels->visit([&](const Voxel& voxel) { sizing_.field.lower(voxel, kLateSize); });
+    voxels->visit([&](const Voxel& voxel) { sizing_.field.lower(voxel, late_size(mesh_, voxel)); });
   }
   sizing_.field.bound_slope();
 }

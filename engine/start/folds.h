@@ -2,14 +2,17 @@
 #pragma once
 #include "engine/mesh/mesh.h"
 #include "engine/start/voxel_set.h"
-#include "kernels/image.h"
 
 namespace plc {
 
+// The size that an adaptive mesh is to have at most, in delta, where it has missed a voxel or is
+// folded at it: less where the full image is thin there.
+float late_size(const Mesh& mesh, const Voxel& voxel);
+
 // Puts the voxels of those vertices into `folds`, which is of the image's voxels or of none yet,
-// whose size is above kLateSize and the finest, and one of whose faces turns from their normal by
-// more than kFoldCosine: of the border of a hole that a coarser level has torn into a plate, of
+// whose size is above that and the finest, and one of whose faces turns from their normal by more
+// than kFoldCosine: of the border of a hole that a coarser level has torn into a plate, of
 // tips and ridges that the image has not. False where there are none. The mesh is adaptive.
-bool find_folds(const Mesh& mesh, const ImageView& image, VoxelSet& folds);
+bool find_folds(const Mesh& mesh, VoxelSet& folds);
 
 }  // namespace plc

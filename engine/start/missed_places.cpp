@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/constants.h"
+#include "engine/start/thickness.h"
 #include "kernels/image_value.h"
 #include "pyramid/memory.h"
 
@@ -76,7 +77,7 @@ struct Place {
 class Search {
  public:
   Search(const ImageObject& object, Sets& missed)
-      : image_(object.image), iso_(object.iso), missed_(missed) {
+      : object_(object), image_(object.image), missed_(missed) {
     for (size_t a = 0; a < 3; ++a) length_[a] = 1 / image_.scale[a];
   }
 
@@ -333,37 +334,17 @@ class Search {
     });
   }
 
-  // How far the image is from iso.
-  float depth(const Voxel& v) const {
-    return std::abs(image_value(image_, v[0], v[1], v[2]) - iso_);
-  }
-
   // Whether the iso-surface is `thinnest` apart on the two sides of a voxel, along each axis.
   bool is_thick(const Voxel& at, const VoxelSet& kind, float thinnest) const {
-    for (size_t a = 0; a < 3; ++a) {
-      float extent = 0;
-      for (const int32_t way : {-1, 1}) {
-        Voxel last = at, next = at;
-        for (next[a] += way; extent < thinnest && within(next) && kind.has(next); next[a] += way) {
-          extent += length_[a];
-          last = next;
-        }
-        if (extent < thinnest) extent += length_[a] * part_inside(last, next);
-      }
-      if (extent < thinnest) return false;
+    const auto goes_on = [&](const Voxel& v) { return kind.has(v); };
+    for (size_t axis = 0; axis < 3; ++axis) {
+      if (extent_along(object_, at, axis, thinnest, goes_on) < thinnest) return false;
     }
     return true;
   }
 
-  // How much of the way from a voxel to the next, which is on the other side, lies inside.
-  float part_inside(const Voxel& last, const Voxel& next) const {
-    if (!within(next)) return 0.5F;  // an image ends half a voxel from its last
-    const float inside = depth(last);
-    return inside == 0 ? 0 : inside / (inside + depth(next));
-  }
-
+  const ImageObject& object_;
   const ImageView& image_;
-  float iso_;
   Sets& missed_;
   std::array<float, 3> length_{};  // of a voxel, mesh units
   Vector<Voxel> around_, between_;
