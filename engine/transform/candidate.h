@@ -36,10 +36,11 @@ struct Candidate {
   static constexpr uint32_t kNoVertex = ~0U;
   Cycle cycle() const { return {{edge.u, edge.v, edge.a, edge.b}, edge.b == kNoVertex ? 3U : 4U}; }
 
-  // The total order of a pass: no two candidates of a pass compare equal.
+  // The total order of a pass: two that compare equal are the same.
   friend bool operator<(const Candidate& l, const Candidate& r) {
     const uint64_t of_l = l.rank(), of_r = r.rank();
-    return of_l != of_r ? of_l < of_r : l.ends() < r.ends();
+    if (of_l != of_r) return of_l < of_r;
+    return l.ends() != r.ends() ? l.ends() < r.ends() : l.others() < r.others();
   }
 
  private:
@@ -52,6 +53,7 @@ struct Candidate {
     return uint64_t{static_cast<uint8_t>(operation)} << 32 | bits;
   }
   uint64_t ends() const { return uint64_t{edge.u} << 32 | edge.v; }
+  uint64_t others() const { return uint64_t{edge.a} << 32 | edge.b; }
 };
 
 // The key: squared length of an edge of it.

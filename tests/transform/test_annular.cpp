@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "engine/base/constants.h"
+#include "engine/transform/candidate.h"
 #include "engine/transform/deletion.h"
 #include "tests/samples/sample_surfaces.h"
 
@@ -190,4 +191,18 @@ TEST_CASE("a cut through a vertex of a long ring shares its neighbours out", "[a
     REQUIRE(plc::broken_invariant(mesh) == "");
     CHECK(samples::euler(mesh) == 2);
   }
+}
+
+TEST_CASE("of cycles over the same edge each has a place in the order", "[annular]") {
+  const plc::Candidate three = plc::cut_along({{1, 2, 3}}, 1),
+                       other = plc::cut_along({{1, 2, 4}}, 1);
+  const plc::Candidate four = plc::cut_along({{1, 2, 3, 5}, 4}, 1);
+  for (const auto& [l, r] :
+       {std::pair(three, other), std::pair(four, other), std::pair(four, three)}) {
+    CHECK(l < r);
+    CHECK_FALSE(r < l);
+  }
+  CHECK_FALSE(three < three);
+  CHECK(three.cycle().size == 3);
+  CHECK(four.cycle().size == 4);
 }
