@@ -173,7 +173,7 @@ inline constexpr float kBubbleGap = 1.5F;
 // image's, by which its edges would be long.
 inline constexpr float kLateSize = 1.25F;
 // ... and this where the full image is thinner than kThin delta along an axis: of eight images mean
-// distances to what comes out are smaller by a hundredth to a quarter, with 4 to 54 % more
+// distances to what comes out are smaller by a twentieth to a quarter, with 6 to 54 % more
 // vertices. On coarser levels it would be no nearer, but slower.
 inline constexpr float kThinSize = 0.7F;
 inline constexpr float kThin = 1;

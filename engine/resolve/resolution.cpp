@@ -175,6 +175,7 @@ Vector<Candidate> Resolution::edge_candidates(const Vector<uint32_t>& queue) {
       }
       if (const auto candidate = edge_candidate(mesh_, from, slot)) out.push_back(*candidate);
     }
+    // To look around all due vertices finds nothing more that stays, and takes 3 to 10 % longer.
     if (const auto candidate = denied_cycle(mesh_, u)) out.push_back(*candidate);
   };
   return collect_sorted(executor_, queue.size(), kChunk, std::less<Candidate>(), collect);

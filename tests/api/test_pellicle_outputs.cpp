@@ -193,7 +193,7 @@ TEST_CASE("edges are as long as the header says", "[pellicle_outputs]") {
 }
 
 // The border of such a hole, as a coarse level may tear it, is nothing of the image's.
-TEST_CASE("a hole that only the surface has in a thin plate is closed but for pores",
+TEST_CASE("a hole that only the surface has in a thin plate is closed but for a pore",
           "[pellicle_outputs]") {
   const Context context = make_context();
   const Volume with = edged_plate(7), without = edged_plate(0);
