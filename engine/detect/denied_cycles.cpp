@@ -25,7 +25,7 @@ bool is_around_object(const Mesh& mesh, const Cycle& cycle, Vec3 centre) {
     const uint32_t v = cycle.corner[i];
     outward += dot(vertex_normal(mesh, v), mesh.at(v) - centre);
   }
-  return outward > 0;
+  return (outward > 0) != mesh.inside_out;
 }
 
 bool bounds_few(const Mesh& mesh, const Cycle& cycle, bool left) {

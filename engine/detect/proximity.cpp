@@ -46,7 +46,7 @@ std::optional<Candidate> classify(const Mesh& mesh, const Neighbors& of_u, uint3
   // What lies between is what the surface says that it is.
   if (mesh.sizing != nullptr) {
     const Vec3 between = mesh.at(w) - mesh.at(u);
-    const bool enclosed = dot(normal, between) < 0;
+    const bool enclosed = (dot(normal, between) < 0) != mesh.inside_out;
     if (mesh.sizing->inside(midpoint(mesh.at(u), mesh.at(w))) == enclosed) return std::nullopt;
   }
   return Candidate{Operation::kAxial, distance2, {std::min(u, w), std::max(u, w), 0, 0}};

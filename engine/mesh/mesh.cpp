@@ -226,6 +226,7 @@ void Mesh::clear() {
   Mesh empty;
   empty.delta = delta;
   empty.sizing = sizing;
+  empty.inside_out = inside_out;
   empty.obstacles = obstacles;
   empty.stretch = stretch;
   empty.longest_edge = longest_edge;
@@ -284,6 +285,7 @@ void Mesh::renumber(const Vector<uint32_t>& order, const Executor& executor) {
   Mesh to;
   to.delta = delta;
   to.sizing = sizing;
+  to.inside_out = inside_out;
   to.obstacles = obstacles;
   to.stretch = stretch;
   to.longest_edge = longest_edge;

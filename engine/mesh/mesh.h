@@ -89,6 +89,8 @@ class Mesh {
   double delta = 1;
   // By how much delta is larger or smaller, by place; null: by nothing. Borrowed.
   const Sizing* sizing = nullptr;
+  // Normals point into the object: the surface is one of cavities alone.
+  bool inside_out = false;
   // What the surface may not meet (guard/obstacles.h); null: nothing. Borrowed.
   const Obstacles* obstacles = nullptr;
   // By how much edges may be longer than (2) has them at the sizes of their ends: more where a

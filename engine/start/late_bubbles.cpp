@@ -108,6 +108,7 @@ Status start_late_bubbles(const ImageObject& object, const MissedPlaces& places,
     const Cutout cutout(object, places, kind);
     Mesh part;
     part.sizing = mesh.sizing;
+    part.inside_out = kind == Missed::kCavity;
     if (Status s = regular_iso_surface(cutout.object(), cutout.values(), schedule, part); !s.ok()) {
       return s;
     }
@@ -116,7 +117,7 @@ Status start_late_bubbles(const ImageObject& object, const MissedPlaces& places,
     if (!s.ok()) return s;
     (kind == Missed::kPart ? started.bubbles : started.cavities) += count;
     started.volume += volume_of(part, schedule);
-    append_mesh(mesh, part, kind == Missed::kCavity, [](Vec3 p) { return p; });
+    append_mesh(mesh, part, part.inside_out, [](Vec3 p) { return p; });
   }
   return {};
 }

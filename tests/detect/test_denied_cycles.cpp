@@ -70,6 +70,18 @@ TEST_CASE("four edges are denied around a way through the object alone", "[denie
   }
 }
 
+TEST_CASE("what is denied of a cavity is so before and after it is turned inside out",
+          "[denied_cycles]") {
+  for (const uint32_t sides : {3U, 4U}) {
+    for (const bool object : {false, true}) {
+      const Tube turned(sides, true, object);
+      Tube alone(sides, false, object);
+      alone.mesh.inside_out = true;
+      CHECK(alone.denied(4 * sides).has_value() == turned.denied(4 * sides).has_value());
+    }
+  }
+}
+
 TEST_CASE("cycles are looked for where an adaptive mesh bends", "[denied_cycles]") {
   Tube tube(3, false, false);
   REQUIRE(tube.denied(12).has_value());

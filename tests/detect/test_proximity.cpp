@@ -63,6 +63,11 @@ TEST_CASE("sheets between which the image has what the surface says stay apart",
   CHECK(candidates_of(mesh).empty());
   mesh.sizing = &object.sizing;
   CHECK(candidates_of(mesh).size() == 1);
+  // Two cavities, before they are turned inside out.
+  mesh.inside_out = true;
+  CHECK(candidates_of(mesh).empty());
+  mesh.sizing = &other.sizing;
+  CHECK(candidates_of(mesh).size() == 1);
   // The wall between a cavity and what is around.
   Soup soup = samples::flipped(samples::sphere(2));
   soup.append(samples::moved(samples::sphere(2), 0, 0, 0, 1.1));

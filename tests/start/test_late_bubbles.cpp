@@ -165,6 +165,32 @@ TEST_CASE("a missed cavity gets a wall that faces inward", "[late_bubbles]") {
   CHECK(wrong_voxels(mesh, scene) == 0);
 }
 
+TEST_CASE("a thin cavity gets a whole wall in an adaptive mesh", "[late_bubbles]") {
+  BallScene scene({{20, 12, 12, 30}});
+  fill_box(scene, {5, 12, 12}, {34, 12, 12}, 0);
+  const plc::Schedule schedule(1);
+  plc::Sizing sizing;
+  sizing.object = {scene.view(), kIso, true};
+  sizing.full_image = true;
+  REQUIRE(sizing.field.build(scene.view(), kIso, kDelta, {}, schedule).ok());
+  for (int32_t x = 5; x <= 34; ++x) sizing.field.lower({x, 12, 12}, plc::kThinSize);
+  sizing.field.bound_slope();
+  Mesh mesh;
+  mesh.sizing = &sizing;
+  samples::fill_mesh(mesh, samples::moved(samples::sphere(3), 20, 12, 12, 40), kDelta);
+  const uint32_t old = mesh.slots();
+  CHECK(start(mesh, scene).cavities == 1);
+  CHECK(samples::component_count(mesh) == 2);
+  CHECK(samples::euler(mesh) == 4);
+  float low = 40, high = 0;
+  for (uint32_t v = old; v < mesh.slots(); ++v) {
+    low = std::min(low, mesh.at(v).x);
+    high = std::max(high, mesh.at(v).x);
+  }
+  CHECK(low == Approx(5).margin(0.5));
+  CHECK(high == Approx(34).margin(0.5));
+}
+
 TEST_CASE("parts and cavities are started together and counted each", "[late_bubbles]") {
   const BallScene scene({{12, 12, 12, 10}, {12, 12, 12, -4}, {31, 7, 12, 4}, {31, 18, 12, 3.5}});
   Mesh mesh;
