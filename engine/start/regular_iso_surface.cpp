@@ -28,15 +28,13 @@ class Projection {
   Projection(const ImageView& image, const LatticeValues& values, float iso)
       : image_(image), values_(values), iso_(iso) {}
 
-  // voxel: number of the one inside that p belongs to.
+  // voxel: number of the one inside that p, and q, belongs to.
+  bool across(Vec3 p, Vec3 q, uint64_t voxel) const {
+    const Vec3 from = place(voxel);
+    return dot(in_voxels(p) - from, in_voxels(q) - from) < 0;
+  }
   Vec3 project(Vec3 p, uint64_t voxel) const {
-    const auto width = static_cast<uint64_t>(image_.dims[0]) + 2;
-    const auto height = static_cast<uint64_t>(image_.dims[1]) + 2;
-    const uint64_t row = voxel / width, plane = row / height;
-    // The lattice has a point more on every side.
-    const Vec3 from{static_cast<float>(voxel % width) - 1, static_cast<float>(row % height) - 1,
-                    static_cast<float>(plane) - 1};
-    const Vec3 way = in_voxels(p) - from;
+    const Vec3 from = place(voxel), way = in_voxels(p) - from;
     const float at_voxel = value(from), at_p = value(from + way);
     const float longer = (at_voxel - iso_) / (at_voxel - at_p);
     if (std::isnan(longer)) return p;
@@ -51,6 +49,14 @@ class Projection {
  private:
   static constexpr float kShortest = 0.8F, kLongest = 1.5F;
 
+  Vec3 place(uint64_t voxel) const {
+    const auto width = static_cast<uint64_t>(image_.dims[0]) + 2;
+    const auto height = static_cast<uint64_t>(image_.dims[1]) + 2;
+    const uint64_t row = voxel / width, plane = row / height;
+    // The lattice has a point more on every side.
+    return {static_cast<float>(voxel % width) - 1, static_cast<float>(row % height) - 1,
+            static_cast<float>(plane) - 1};
+  }
   Vec3 in_voxels(Vec3 p) const {
     return {p.x * image_.scale[0] + image_.offset[0], p.y * image_.scale[1] + image_.offset[1],
             p.z * image_.scale[2] + image_.offset[2]};
@@ -87,15 +93,20 @@ class Projection {
 // Merges the vertices of each voxel, but for those that stay apart.
 class Merging {
  public:
-  Merging(Mesh& mesh, const Vector<uint64_t>& voxel, const Vector<uint8_t>& apart)
-      : mesh_(mesh), voxel_(voxel), apart_(apart), merged_(mesh.slots(), 1) {}
+  Merging(Mesh& mesh, const Vector<uint64_t>& voxel, const Vector<uint8_t>& apart,
+          const Projection& projection)
+      : mesh_(mesh),
+        voxel_(voxel),
+        apart_(apart),
+        projection_(projection),
+        merged_(mesh.slots(), 1) {}
 
-  void run(const Projection& projection) {
+  void run() {
     for (uint32_t v = 0; v < mesh_.slots(); ++v) {
       while (mesh_.alive(v) && apart_[v] == 0 && contract_one(v)) {
       }
       if (mesh_.alive(v) && merged_[v] > 1) {
-        mesh_.place(v, projection.project(mesh_.at(v), voxel_[v]));
+        mesh_.place(v, projection_.project(mesh_.at(v), voxel_[v]));
       }
     }
   }
@@ -106,6 +117,9 @@ class Merging {
     for (uint32_t k = 0; k < mesh_.valence(v); ++k) {
       const Edge e = edge_at(mesh_, v, k);
       if (voxel_[e.v] != voxel_[v] || !can_contract(mesh_, e)) continue;
+      if (mesh_.sizing != nullptr && projection_.across(mesh_.at(v), mesh_.at(e.v), voxel_[v])) {
+        continue;
+      }
       const auto of_v = static_cast<float>(merged_[v]), of_w = static_cast<float>(merged_[e.v]);
       const Vec3 mean = (mesh_.at(v) * of_v + mesh_.at(e.v) * of_w) * (1 / (of_v + of_w));
       merged_[v] += merged_[e.v];
@@ -118,6 +132,7 @@ class Merging {
   Mesh& mesh_;
   const Vector<uint64_t>& voxel_;
   const Vector<uint8_t>& apart_;
+  const Projection& projection_;
   Vector<uint32_t> merged_;  // crossings that a vertex stands for
 };
 
@@ -148,7 +163,7 @@ Status regular_iso_surface(const ImageObject& object, const LatticeValues& value
   Vector<uint8_t> apart(mesh.slots(), 0);
   const Projection projection(object.image, values, object.iso);
   for (int i = 0; i < kTries; ++i) {
-    Merging(mesh, voxel, apart).run(projection);
+    Merging(mesh, voxel, apart, projection).run();
     if (!set_apart(mesh, schedule, voxel, apart)) {
       mesh.renumber(morton_order(mesh, schedule), schedule);
       return {};

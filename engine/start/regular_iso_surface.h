@@ -5,7 +5,8 @@
 // the crossings on the edges of one voxel that is inside are merged into one vertex, on the
 // iso-surface, where the surface stays a manifold. They keep crossings apart beforehand, by cases;
 // here crossings are merged as long as edges may be contracted, and apart again where the faces
-// then meet.
+// then meet. In an adaptive mesh crossings across a voxel from each other stay apart, too: they are
+// of the two sheets of a part of one voxel.
 #pragma once
 #include "engine/base/schedule.h"
 #include "engine/start/iso_surface.h"

@@ -22,7 +22,7 @@ plc::ImageView view_of(const samples::Volume& volume) {
 }
 
 struct Both {
-  Mesh plain, regular;
+  Mesh plain, regular, adaptive;
 };
 
 Both surfaces_of(const samples::Volume& volume, float iso, int threads = 1) {
@@ -37,6 +37,11 @@ Both surfaces_of(const samples::Volume& volume, float iso, int threads = 1) {
   Both both;
   REQUIRE(plc::iso_surface({view, iso, true}, values, schedule, both.plain).ok());
   REQUIRE(plc::regular_iso_surface({view, iso, true}, values, schedule, both.regular).ok());
+  plc::Sizing sizing;
+  REQUIRE(sizing.field.build(view, iso, 1, {}, schedule).ok());
+  both.adaptive.sizing = &sizing;
+  REQUIRE(plc::regular_iso_surface({view, iso, true}, values, schedule, both.adaptive).ok());
+  both.adaptive.sizing = nullptr;
   return both;
 }
 
@@ -83,4 +88,6 @@ TEST_CASE("a plate of one voxel, and a single one, keep two sides", "[regular_is
   CHECK(samples::component_count(both.regular) == 2);
   CHECK(samples::euler(both.regular) == 4);
   CHECK(samples::volume(both.regular) > 0.3 * samples::volume(both.plain));
+  CHECK(samples::euler(both.adaptive) == 4);
+  CHECK(samples::volume(both.adaptive) > 0.7 * samples::volume(both.plain));
 }
