@@ -97,8 +97,15 @@ Status Recovery::start_level() {
   records_.emplace_back();
   record().level = level_;
   enter(level_);
+  tried_ = VoxelSet();
+  folds_ = VoxelSet();
   const bool fresh = mesh_.vertex_count() == 0;
   if (fresh) {
+    // What conforms goes by the sizes; a patch has none before it is there.
+    mesh_.delta = delta_of(level_);
+    if (!spec_.start.patch) {
+      if (Status s = build_sizing(); !s.ok()) return s;
+    }
     const LevelImage level{pyramid_, level_,         spec_.pad_voxels,
                            space_,   iso_of(level_), spec_.inside_above};
     if (Status s = start_surface(spec_.start, level, delta_of(level_), schedule_, mesh_,
@@ -110,8 +117,6 @@ Status Recovery::start_level() {
   }
   if (mesh_.vertex_count() == 0 && !mesh_.is_patch()) return leave_level();
   estimate_.start_level();
-  tried_ = VoxelSet();
-  folds_ = VoxelSet();
   if (Status s = adapt(); !s.ok()) return s;
   if (Status s = build_gradient_image(); !s.ok()) return s;
   bool added = false;
@@ -142,7 +147,9 @@ Status Recovery::adapt() {
     ++record().operations.refinement;
   }
   mesh_.delta = target;
-  if (Status s = build_sizing(); !s.ok()) return s;
+  if (mesh_.sizing == nullptr) {
+    if (Status s = build_sizing(); !s.ok()) return s;
+  }
   resize_all();
   for (uint32_t v = 0; v < mesh_.slots(); ++v) {
     mesh_.wake(v);

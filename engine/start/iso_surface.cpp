@@ -323,16 +323,18 @@ Status iso_surface(const ImageObject& object, const LatticeValues& values, const
   return {};
 }
 
-Status iso_surface(const ImageObject& object, const Executor& executor, Mesh& mesh) {
-  const ImageView& image = object.image;
-  const LatticeValues values{
-      [&](int32_t y, int32_t z, uint8_t* inside) {
-        Vector<float> row(static_cast<size_t>(image.dims[0]));
-        image_row(image, y, z, row.data());
+LatticeValues values_of(const ImageObject& object) {
+  return {
+      [&object](int32_t y, int32_t z, uint8_t* inside) {
+        Vector<float> row(static_cast<size_t>(object.image.dims[0]));
+        image_row(object.image, y, z, row.data());
         for (size_t x = 0; x < row.size(); ++x) inside[x] = object.has(row[x]);
       },
-      [&](int32_t x, int32_t y, int32_t z) { return image_value(image, x, y, z); }};
-  return iso_surface(object, values, executor, mesh);
+      [&object](int32_t x, int32_t y, int32_t z) { return image_value(object.image, x, y, z); }};
+}
+
+Status iso_surface(const ImageObject& object, const Executor& executor, Mesh& mesh) {
+  return iso_surface(object, values_of(object), executor, mesh);
 }
 
 }  // namespace plc

@@ -41,6 +41,9 @@ struct LatticeValues {
   std::function<float(int32_t x, int32_t y, int32_t z)> at;
 };
 
+// Of an image, which outlives them.
+LatticeValues values_of(const ImageObject& object);
+
 // The same of such values; of the object the image's dims, scale and offset are read, and iso.
 // `voxel` gets, for each vertex, a number of the voxel inside on whose edge it lies.
 Status iso_surface(const ImageObject& object, const LatticeValues& values, const Executor& executor,

@@ -13,8 +13,8 @@
 #include "engine/mesh/mesh_append.h"
 #include "engine/resolve/conform.h"
 #include "engine/start/initial_surface.h"
-#include "engine/start/iso_surface.h"
 #include "engine/start/mesh_import.h"
+#include "engine/start/regular_iso_surface.h"
 #include "engine/start/stretched_bubble.h"
 #include "kernels/image_value.h"
 #include "pyramid/memory.h"
@@ -222,7 +222,7 @@ Status make_mesh(const StartSpec& spec, const LevelImage& level, const Executor&
 // Every so many voxels of an image that is finer than delta on some axis (level_delta): a surface
 // that follows all of them is so crowded that conform() takes minutes.
 Status coarse_iso_surface(const ImageObject& object, const std::array<int32_t, 3>& stride,
-                          const Executor& executor, Mesh& mesh) {
+                          const Schedule& schedule, Mesh& mesh) {
   const ImageView& view = object.image;
   ImageView coarse = view;
   for (size_t a = 0; a < 3; ++a) {
@@ -238,19 +238,19 @@ Status coarse_iso_surface(const ImageObject& object, const std::array<int32_t, 3
   const auto sides = [&](int32_t y, int32_t z, uint8_t* inside) {
     for (int32_t x = 0; x < coarse.dims[0]; ++x) inside[x] = object.has(at(x, y, z));
   };
-  return iso_surface({coarse, object.iso, object.above}, {sides, at}, executor, mesh);
+  return regular_iso_surface({coarse, object.iso, object.above}, {sides, at}, schedule, mesh);
 }
 
 // An image without the object is no error: the next finer level may show it.
-Status make_iso(const ImageObject& object, double delta, const Executor& executor, Mesh& mesh) {
+Status make_iso(const ImageObject& object, double delta, const Schedule& schedule, Mesh& mesh) {
   std::array<int32_t, 3> stride{};
   for (size_t a = 0; a < 3; ++a) {
     stride[a] =
         std::max(1, static_cast<int32_t>(delta * static_cast<double>(object.image.scale[a])));
   }
   Status s = stride == std::array<int32_t, 3>{1, 1, 1}
-                 ? iso_surface(object, executor, mesh)
-                 : coarse_iso_surface(object, stride, executor, mesh);
+                 ? regular_iso_surface(object, values_of(object), schedule, mesh)
+                 : coarse_iso_surface(object, stride, schedule, mesh);
   return s.code() == ErrorCode::kInvalidData ? Status() : s;
 }
 
