@@ -1,6 +1,7 @@
 #include "engine/resolve/conform.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdio>
@@ -57,13 +58,19 @@ double vertices_needed(const Mesh& mesh) {
   return area / (std::sqrt(3.0) / 4 * edge * edge) / 2;
 }
 
-Status divide_long_edges(Mesh& mesh, OperationCounts& counts) {
+// The ends of the edges that vertices were created on, by id from `given` on.
+using Ends = Vector<std::array<uint32_t, 2>>;
+
+// whole: of the vertices that were given; edges between two of them of which one is marked stay.
+Status divide_long_edges(Mesh& mesh, const Vector<uint8_t>& whole, Ends& ends,
+                         OperationCounts& counts) {
   if (vertices_needed(mesh) > static_cast<double>(mesh.most_vertices)) return too_many_vertices();
+  const auto stays = [&](uint32_t v) { return v < whole.size() && whole[v] != 0; };
   // An edge in the queue stays what it is until its turn: only edges taken from it go.
   std::priority_queue<LongEdge> queue;
   const auto consider = [&](uint32_t u, uint32_t v, float squared) {
     const float size = mesh.size_between(u, v);
-    if (squared >= kMaxEdge * kMaxEdge * size * size)
+    if (squared >= kMaxEdge * kMaxEdge * size * size && !stays(u) && !stays(v))
       queue.push({squared, std::min(u, v), std::max(u, v)});
   };
   visit_edges(mesh, consider);
@@ -76,12 +83,54 @@ Status divide_long_edges(Mesh& mesh, OperationCounts& counts) {
       return {ErrorCode::kInvalidData, "too many edges at one vertex to divide those around it"};
     }
     const uint32_t w = create_on_edge(mesh, e);
+    assert(w == whole.size() + ends.size());
+    ends.push_back({e.u, e.v});
     ++counts.creation;
     for (const uint32_t x : {e.u, e.a, e.v, e.b}) {
       consider(w, x, squared_distance(mesh.at(w), mesh.at(x)));
     }
   }
   return {};
+}
+
+// Marks a vertex of the given ones, or those that the edge of a created one led between.
+void mark_given(uint32_t v, const Ends& ends, Vector<uint8_t>& whole) {
+  if (v < whole.size()) {
+    whole[v] = 1;
+    return;
+  }
+  for (const uint32_t end : ends[v - whole.size()]) mark_given(end, ends, whole);
+}
+
+// Where divided faces meet, in single precision, they are left whole in an adaptive mesh: there the
+// guards look as far as the longest edge asks for, and divide it if they can.
+Status divide_faces(Mesh& mesh, const Schedule& schedule, OperationCounts& counts) {
+  constexpr int kTries = 8;
+  const uint32_t given = mesh.slots();
+  const Mesh undivided = mesh.sizing == nullptr ? Mesh() : mesh.copy();
+  const OperationCounts before = counts;
+  Vector<uint8_t> whole(given, 0);
+  for (int i = 0;; ++i) {
+    Ends ends;
+    if (Status s = divide_long_edges(mesh, whole, ends, counts); !s.ok()) return s;
+    if (mesh.slots() == given) return {};
+    // The search has boxes around vertices of successive ids. Where these lie anywhere, all boxes
+    // overlap, and it would take quadratic time.
+    const Vector<uint32_t> order = morton_order(mesh, schedule);
+    mesh.renumber(order, schedule);
+    const auto meeting = meeting_faces(mesh, schedule);
+    Obstacles::Meeting with_obstacle;
+    if (mesh.obstacles != nullptr && mesh.obstacles->find_meeting(mesh, with_obstacle)) break;
+    if (meeting.empty()) return {};
+    if (mesh.sizing == nullptr || i == kTries) break;
+    for (const auto& face : meeting) {
+      for (const uint32_t v : face) mark_given(order[v], ends, whole);
+    }
+    mesh.take(undivided.copy());
+    counts = before;
+  }
+  return {ErrorCode::kInvalidData,
+          "the surface has faces too thin to be divided in single precision"};
 }
 
 double longest_edge(const Mesh& mesh) {
@@ -123,19 +172,7 @@ void put_at_rest(Mesh& mesh, const Executor& executor) {
 Status conform(Mesh& mesh, double delta, const Schedule& schedule, OperationCounts& counts) {
   mesh.delta = delta;
   for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.resize(v);
-  const uint32_t given = mesh.slots();
-  if (Status s = divide_long_edges(mesh, counts); !s.ok()) return s;
-  if (mesh.slots() != given) {
-    // The search has boxes around vertices of successive ids. Where these lie anywhere, all boxes
-    // overlap, and it would take quadratic time.
-    mesh.renumber(morton_order(mesh, schedule), schedule);
-    Obstacles::Meeting meeting;
-    if (!meeting_faces(mesh, schedule).empty() ||
-        (mesh.obstacles != nullptr && mesh.obstacles->find_meeting(mesh, meeting))) {
-      return {ErrorCode::kInvalidData,
-              "the surface has faces too thin to be divided in single precision"};
-    }
-  }
+  if (Status s = divide_faces(mesh, schedule, counts); !s.ok()) return s;
   Detection detection(mesh, schedule);
   Resolution resolution(mesh, schedule, detection);
   // So that the longest edge is just within (2).

@@ -7,6 +7,7 @@
 #include "engine/mesh/state_hash.h"
 #include "engine/start/iso_surface.h"
 #include "engine/start/mesh_import.h"
+#include "tests/samples/sample_sizing.h"
 #include "tests/samples/sample_surfaces.h"
 #include "tests/samples/sample_volumes.h"
 #include "tests/samples/sample_woken.h"
@@ -90,6 +91,18 @@ Soup prism(uint32_t n, double radius, double height) {
     m.face(top, n + i, n + j);
   }
   return m;
+}
+
+// Slanted, of the thickness of two steps of floats at 1000.
+Soup thin_plate(double half) {
+  Soup plate = samples::cube();
+  for (size_t i = 0; i < plate.xyz.size(); i += 3) {
+    const double x = plate.xyz[i] * half, y = plate.xyz[i + 1] * half * 0.92;
+    plate.xyz[i] = 1000 + x;
+    plate.xyz[i + 1] = 1000 + y;
+    plate.xyz[i + 2] = 1000 + 0.37 * x + 0.21 * y + plate.xyz[i + 2] * 2e-4;
+  }
+  return plate;
 }
 
 }  // namespace
@@ -179,20 +192,31 @@ TEST_CASE("components too small for delta vanish, and a surface of nothing else 
 }
 
 TEST_CASE("sheets so near that dividing them makes them meet are refused", "[conform]") {
-  // A slanted plate of the thickness of two steps of floats at 1000.
-  Soup plate = samples::cube();
-  for (size_t i = 0; i < plate.xyz.size(); i += 3) {
-    const double x = plate.xyz[i] * 97, y = plate.xyz[i + 1] * 89;
-    plate.xyz[i] = 1000 + x;
-    plate.xyz[i + 1] = 1000 + y;
-    plate.xyz[i + 2] = 1000 + 0.37 * x + 0.21 * y + plate.xyz[i + 2] * 2e-4;
-  }
   Mesh mesh;
-  import(mesh, plate);
+  import(mesh, thin_plate(97));
   OperationCounts counts;
   const plc::Status status = try_conform(mesh, 1, counts);
   CHECK(status.code() == plc::ErrorCode::kInvalidData);
   CHECK(status.message() == "the surface has faces too thin to be divided in single precision");
+}
+
+TEST_CASE("in an adaptive mesh such sheets are left to the guards, and all else conforms",
+          "[conform]") {
+  const samples::FullImage image(true);
+  const plc::Schedule schedule(1);
+  plc::Sizing sizing = image.sizing;
+  plc::SizeSpec same;
+  same.finest = same.coarsest = 1;
+  REQUIRE(sizing.field.build(sizing.object.image, 0.5F, 1, same, schedule).ok());
+  Soup both = thin_plate(6);
+  both.append(samples::moved(samples::cube(), 1000, 1000, 1040, 5));
+  Mesh mesh;
+  import(mesh, both);
+  mesh.sizing = &sizing;
+  OperationCounts counts;
+  CHECK(try_conform(mesh, 1, counts).message() == "");
+  CHECK(samples::meeting_count(mesh) == 0);
+  CHECK(samples::volume(mesh) == Approx(125).epsilon(0.1));
 }
 
 TEST_CASE("a surface that would need more vertices than there are ids is refused at once",
