@@ -41,7 +41,7 @@ struct LatticeValues {
   std::function<float(int32_t x, int32_t y, int32_t z)> at;
 };
 
-// Of an image, which outlives them.
+// Of an object, which outlives them.
 LatticeValues values_of(const ImageObject& object);
 
 // The same of such values; of the object the image's dims, scale and offset are read, and iso.
