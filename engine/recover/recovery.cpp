@@ -101,7 +101,7 @@ Status Recovery::start_level() {
   folds_ = VoxelSet();
   const bool fresh = mesh_.vertex_count() == 0;
   if (fresh) {
-    // What conforms goes by the sizes; a patch has none before it is there.
+    // What conforms goes by the sizes; those of a patch depend on what it holds.
     mesh_.delta = delta_of(level_);
     if (!spec_.start.patch) {
       if (Status s = build_sizing(); !s.ok()) return s;

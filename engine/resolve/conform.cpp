@@ -58,7 +58,7 @@ double vertices_needed(const Mesh& mesh) {
   return area / (std::sqrt(3.0) / 4 * edge * edge) / 2;
 }
 
-// The ends of the edges that vertices were created on, by id from `given` on.
+// The ends of the edges that vertices were created on, in the order of their ids.
 using Ends = Vector<std::array<uint32_t, 2>>;
 
 // whole: of the vertices that were given; edges between two of them of which one is marked stay.

@@ -1,4 +1,4 @@
-// The iso-surface of an image: the initial model of figure 23, and the surface of a mask or label.
+// The iso-surface of an image, of which regular_iso_surface.h makes what surfaces start from.
 //
 // Marching tetrahedra on the six of Kuhn and Freudenthal around each cell's main diagonal. They are
 // the same from cell to cell, so the surface is that of a continuous function, linear in each:

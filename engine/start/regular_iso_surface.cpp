@@ -28,7 +28,8 @@ class Projection {
   Projection(const ImageView& image, const LatticeValues& values, float iso)
       : image_(image), values_(values), iso_(iso) {}
 
-  // voxel: number of the one inside that p, and q, belongs to.
+  // voxel, here and below: the number of the one inside that the places belong to. Whether they lie
+  // across it from each other.
   bool across(Vec3 p, Vec3 q, uint64_t voxel) const {
     const Vec3 from = place(voxel);
     return dot(in_voxels(p) - from, in_voxels(q) - from) < 0;

@@ -1,5 +1,6 @@
 // The iso-surface with vertices about a voxel apart: a quarter of those of iso_surface.h, so that
-// little is left to be done before it is as coarse as the mesh.
+// little is left to be done before it is as coarse as the mesh. Late bubbles, the initial model of
+// figure 23, and the surfaces of masks and labels start from it.
 //
 // After Treece, Prager and Gee, "Regularised marching tetrahedra" (Computers & Graphics 23, 1999):
 // the crossings on the edges of one voxel that is inside are merged into one vertex, on the
