@@ -127,6 +127,21 @@ VoxelForm borrowed_form(const VolumeView& volume, const Window& window, int64_t 
   return form.type == ImageType::kUnit ? VoxelForm() : form;
 }
 
+VoxelForm converted_form(const VolumeView& volume, const Window& window, int64_t pad,
+                         double pad_value, const Executor& executor, Buffer<float>& voxels) {
+  if (volume.type != VoxelType::kI32 || !within_floats(volume, window)) return {};
+  VoxelForm form = form_of(volume, window, pad, pad_value);
+  form.type = ImageType::kF32;
+  const auto plane = static_cast<size_t>(volume.dims[0] * volume.dims[1]);
+  const auto planes = static_cast<size_t>(volume.dims[2]);
+  voxels.resize_uninitialized(plane * planes);
+  const auto* from = static_cast<const int32_t*>(volume.voxels);
+  executor.run(planes, [&](size_t z) {
+    for (size_t i = z * plane; i < (z + 1) * plane; ++i) voxels[i] = static_cast<float>(from[i]);
+  });
+  return form;
+}
+
 float window_value(const VolumeView& volume, const Window& window, double value) {
   if (within_floats(volume, window)) {
     return voxel_value(form_of(volume, window, 0, 0), static_cast<float>(value));

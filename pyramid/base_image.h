@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "kernels/image.h"
+#include "pyramid/buffer.h"
 #include "pyramid/executor.h"
 #include "pyramid/volume.h"
 
@@ -20,6 +21,12 @@ struct Window {
 // it. Type kUnit where they cannot be: 32-bit integers, and windows beyond the range of floats.
 VoxelForm borrowed_form(const VolumeView& volume, const Window& window, int64_t pad,
                         double pad_value);
+
+// The same of 32-bit integers as floats, which are written into `voxels` and read as the form has
+// it: the bits of equal voxels of a type that can be borrowed. Nothing is written, and the type is
+// kUnit, where floats do not hold the window.
+VoxelForm converted_form(const VolumeView& volume, const Window& window, int64_t pad,
+                         double pad_value, const Executor& executor, Buffer<float>& voxels);
 
 // What a voxel of this value has on I_0: the same bits as the voxel itself.
 float window_value(const VolumeView& volume, const Window& window, double value);

@@ -72,7 +72,7 @@ Status build_gradient(const PyramidLevel& level, const std::array<double, 3>& vo
     // own size.
     Buffer<float> copy;
     const float* values = level.values.data();
-    if (level.values.empty()) {
+    if (level.form.type != ImageType::kUnit || level.values.empty()) {
       copy.resize_uninitialized(voxels);
       copy_values(level, executor, copy.data());
       values = copy.data();

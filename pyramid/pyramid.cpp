@@ -155,6 +155,9 @@ void fill_base(const VolumeView& volume, const PyramidSpec& spec, const Executor
     base.bricks = volume.bricks;
     return;
   }
+  base.form =
+      converted_form(volume, window, spec.pad_voxels, spec.pad_value, executor, base.values);
+  if (base.form.type != ImageType::kUnit) return;
   base.values.resize_uninitialized(voxels_of(base));
   make_base_image(volume, window, spec.pad_voxels, spec.pad_value, executor, base.values.data());
 }
@@ -192,12 +195,9 @@ Status build_levels(const VolumeView& volume, const PyramidSpec& spec, const Exe
 
 ImageView level_image(const PyramidLevel& level) {
   ImageView image;
-  image.data = level.values.data();
-  if (level.borrowed != nullptr || level.bricks != nullptr) {
-    image.data = level.borrowed;
-    image.bricks = level.bricks.get();
-    image.form = level.form;
-  }
+  image.data = level.values.empty() ? level.borrowed : level.values.data();
+  image.bricks = level.bricks.get();
+  image.form = level.form;
   for (size_t a = 0; a < 3; ++a) image.dims[a] = static_cast<int32_t>(level.dims[a]);
   return image;
 }

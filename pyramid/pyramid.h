@@ -25,7 +25,7 @@ struct PyramidLevel {
   double unit = 0;                       // U_h = rho^h U_0 (11), mm
   Buffer<float> values;                  // empty where the voxels are borrowed, and once released
   const void* borrowed = nullptr;        // else null
-  VoxelForm form;                        // of the borrowed voxels, and of bricks
+  VoxelForm form;                        // how either are read, and bricks
   std::shared_ptr<const CachedBricks>
       bricks{};  // of I_0, and of levels above it those of `reduced`
   std::shared_ptr<ReducedBricks> reduced{};
