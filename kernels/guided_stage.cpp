@@ -21,13 +21,14 @@ using scalar::guided_stage;
 using scalar::sized_iso_force;
 #else
 
-// Of a mesh of another size than delta.
-HWY_INLINE Floats stiffness(Floats above) {
+// What (5) is multiplied by where the size of an adaptive mesh is so much above delta.
+HWY_INLINE Floats stiffness(const SurfaceForces& f, Floats above) {
   const FloatTag d;
   const Floats one = hn::Set(d, 1.0F);
   const Floats size = hn::IfThenElse(hn::Gt(above, hn::Zero(d)), hn::Add(one, above), one);
-  const Floats squared = hn::Mul(size, size);
-  return hn::Div(one, hn::Mul(squared, squared));
+  const Floats part = hn::Div(one, hn::Mul(size, size));
+  const Floats sum = hn::Add(hn::Mul(hn::Set(d, f.curvature), part), hn::Set(d, f.smoothing));
+  return hn::Mul(sum, part);
 }
 
 // Where the image is sampled for the vertices i .. i + kLanes - 1.
@@ -90,7 +91,7 @@ HWY_INLINE Floats3 surface_force(const SurfaceForces& f, const Rk4Streams& s, Fl
   const Floats3 around = record_sum(f.ring, f.laplacian, i, valence) * inverse_valence(valence);
   const FloatMask alive = hn::Gt(valence, hn::Zero(d));
   Floats alpha = hn::Set(d, f.curvature);
-  if constexpr (kSized) alpha = hn::Mul(alpha, stiffness(load_packed4(s.position + i).w));
+  if constexpr (kSized) alpha = stiffness(f, load_packed4(s.position + i).w);
   const Floats3 bent = where(alive, (load_packed(f.laplacian + i) - around) * alpha);
   const Floats push = hn::Mul(hn::Set(d, f.attraction), hn::Sub(hn::Set(d, f.iso), value));
   return bent + load3(f.normal, i) * push;

@@ -21,13 +21,15 @@ struct SurfaceForces {
   ConstFloat3s normal;     // the step along the normal
   float attraction;        // delta alpha_I
   float iso;
-  // An adaptive mesh: alpha_c is divided by the fourth power of sizes above delta, which keeps the
-  // length that (5) smooths over. The image's value at a vertex is that at x + facets (L . n) n; of
-  // one whose size is above delta the mean over the middles of its edges has the part min(size
+  // An adaptive mesh. alpha_c is divided by the fourth power of sizes above delta, which keeps the
+  // length that (5) smooths over; `smoothing`, which comes to it, by their square: it reaches
+  // farther where facets are large. The image's value at a vertex is that at x + facets (L . n) n;
+  // of one whose size is above delta the mean over the middles of its edges has the part min(size
   // above delta / delta, star) in it, where the vertex has no more than kRingSlots neighbours. What
   // that adds to the value at the start of a step holds for the step: stage 0 writes it, as what is
   // sampled in between is near, and six times as much as the values themselves.
   bool sized = false;
+  float smoothing = 0;
   float facets = 0;
   float star = 0;
   float* from_star = nullptr;  // per vertex

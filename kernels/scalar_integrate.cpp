@@ -73,10 +73,11 @@ void advance_vertex(int stage, const Rk4Coefficients& c, const Rk4Streams& s, co
   s.stage[i] = next;
 }
 
-// Of a mesh of another size than delta.
-float stiffness(float above) {
+// What (5) is multiplied by where the size of an adaptive mesh is so much above delta.
+float stiffness(const SurfaceForces& f, float above) {
   const float size = above > 0.0F ? 1.0F + above : 1.0F;
-  return 1.0F / (size * size * (size * size));
+  const float part = 1.0F / (size * size);
+  return (f.curvature * part + f.smoothing) * part;
 }
 
 // (5) and (7).
@@ -87,7 +88,7 @@ Triple surface_force(const SurfaceForces& f, float value, float above, uint32_t 
         times(record_sum(f.ring, f.laplacian, i), 1.0F / static_cast<float>(f.ring.valence[i]));
     const Float4& own = f.laplacian[i];
     bent = times({own.x - around.x, own.y - around.y, own.z - around.z},
-                 f.sized ? f.curvature * stiffness(above) : f.curvature);
+                 f.sized ? stiffness(f, above) : f.curvature);
   }
   const Triple push = times(at(f.normal, i), f.attraction * (f.iso - value));
   return {bent.x + push.x, bent.y + push.y, bent.z + push.z};

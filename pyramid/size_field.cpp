@@ -31,6 +31,9 @@ constexpr double kOff = 1.0 / 16;
 // nearer to 0 than this many standard deviations.
 constexpr std::array<float, 3> kSecond{1, -2, 1};
 constexpr double kSeenOfNoise = 14.697, kMedian = 0.6745;
+// Noise is measured in values that are clipped only so far beyond 0 and 1: clipped there, most of
+// what is around a surface is even.
+constexpr float kBeyond = 4;
 // Of noise of variance 1, what is left in the difference of two smoothed voxels with one between.
 constexpr double kLeftOfNoise = 0.625 * 0.375 * 0.375;
 
@@ -83,7 +86,7 @@ class Tile {
     for (auto& t : tensor_) t.resize(kVolume);
   }
 
-  // first: its first voxel.
+  // first: its first voxel. Values are those of the image, clipped kBeyond farther out.
   void read(const ImageView& image, int32_t padding, const std::array<int32_t, 3>& first) {
     const auto within = [&](int32_t i, size_t a) {
       return std::clamp(first[a] - kHalo + i, 0, image.dims[a] - 1);
@@ -97,7 +100,8 @@ class Tile {
       for (int32_t z = 0; z < kSide; ++z) {
         for (int32_t y = 0; y < kSide; ++y) {
           for (int32_t x = 0; x < kSide; ++x) {
-            *to++ = image_value<decltype(voxel)>(image, within(x, 0), within(y, 1), within(z, 2));
+            *to++ = image_value<decltype(voxel)>(image, within(x, 0), within(y, 1), within(z, 2),
+                                                 kBeyond);
           }
         }
       }
@@ -119,7 +123,8 @@ class Tile {
     return low <= iso && high >= iso;
   }
 
-  // Of a voxel of the image, in the values' unit; 0 where more than half of them are even.
+  // Of a voxel of the image, in the values' unit, before find_tensors(); 0 where more than half of
+  // them are even.
   double noise() {
     convolve(value_, 1, kSecond, tensor_[0]);
     convolve(tensor_[0], kRow, kSecond, scratch_);
@@ -144,6 +149,7 @@ class Tile {
 
   // half: of a difference over two voxels, per delta.
   void find_tensors(const std::array<float, 3>& half, float iso) {
+    for (float& v : value_) v = std::clamp(v, 0.0F, 1.0F);
     smooth(value_, kNarrow, scratch_);
     for (auto& t : tensor_) std::fill(t.begin(), t.end(), 0.0F);
     std::fill(weight_.begin(), weight_.end(), 0.0F);

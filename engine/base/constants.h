@@ -31,9 +31,10 @@ inline constexpr float kReach = 16777216;
 // another size since it was looked at.
 inline constexpr float kSizedStretch = 1.05F;
 // alpha_c of an adaptive mesh, as a part of the model's: what (5) smooths of a thin part pulls its
-// rim in. Iguana (adaptive, tolerance 0.05 delta) is 0.61 voxels from its iso-surface at 1, 0.24 at
-// 0.5, 0.17 at 0.25, 0.14 at 0.125.
-inline constexpr float kSizedCurvature = 0.175F;
+// rim in. Images are 0.115 (Iguana), 0.187 (bonsai) and 0.257 voxels (aorta) from their
+// iso-surfaces at 0.175; 0.102, 0.156 and 0.230 at 0.09; 0.099, 0.144 and 0.224 at 0.06; 0.098,
+// 0.131 and 0.218 at 0.03, where a third more sites are frozen.
+inline constexpr float kSizedCurvature = 0.06F;
 // The image is sampled this part of the Laplacian off a vertex: at the mean of its facets, not at
 // the corner. Facets of edges e on a ball of radius R lie e^2 / 8 R inside its corners in the mean,
 // and Laplacians are e^2 / 2 R.
@@ -41,10 +42,13 @@ inline constexpr float kFacets = 0.25F;
 // Of the image's value for a vertex, the most that the mean over the middles of its edges has:
 // noise in it is less. Alone it would not see a vertex that stands out between its neighbours.
 inline constexpr float kStar = 0.75F;
-// alpha_c grows by this part of the model's with the noise of places (SizeField::noise()), up to a
-// noise of kMostNoise.
-inline constexpr float kNoiseCurvature = 12;
-inline constexpr float kMostNoise = 0.35F;
+// Smoothing that comes to it, as a part of the model's alpha_c, for the variance of places by noise
+// (SizeField::noise(), squared, up to kMostNoise): as noise and bending weigh against each other in
+// the likeliest surface. A ball of blur 2 and noise 0.1 is 0.160 voxels off at 0, 0.086 at 4, 0.080
+// at 6, 0.073 at 12; a rod of 3 voxels in that noise 0.128, 0.148, 0.167 and 0.202 (all with 0.175
+// above).
+inline constexpr float kNoiseCurvature = 6;
+inline constexpr float kMostNoise = 1;
 
 // ---- slow vertices (3.6) --------------------------------------------------------------------
 

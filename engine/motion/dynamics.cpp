@@ -136,7 +136,7 @@ void Dynamics::begin_step(const Guide& guide, const Sleep* sleep) {
   resize(guide);
   choose_blocks(sleep);
   Model stiff = model_;
-  stiff.curvature = curvature();
+  stiff.curvature = curvature() + smoothing();
   time_step_ = stable_time_step(stiff, guide.user == nullptr ? 0 : guide.user->stiffness());
 }
 
@@ -289,19 +289,22 @@ void Dynamics::gather_forces(int stage, const Guide& guide, uint32_t begin, uint
   for (uint32_t v = begin; v < end; ++v) force_.set(v, force_.at(v) + user_force_.at(v));
 }
 
-// alpha_c of the mesh. That of an adaptive one is as large as the image's noise asks for.
+// alpha_c of the mesh, and what comes to it in an adaptive one, where it is small, for noise.
 float Dynamics::curvature() const {
-  if (mesh_.sizing == nullptr) return model_.curvature;
+  return (mesh_.sizing == nullptr ? 1 : kSizedCurvature) * model_.curvature;
+}
+float Dynamics::smoothing() const {
+  if (mesh_.sizing == nullptr) return 0;
   const float noise = std::min(mesh_.sizing->field.noise(), kMostNoise);
-  return (kSizedCurvature + kNoiseCurvature * noise) * model_.curvature;
+  return kNoiseCurvature * noise * noise * model_.curvature;
 }
 
 // Of an adaptive mesh: the bits of guided_stage.h.
 void Dynamics::scale_by_size(uint32_t begin, uint32_t end) {
-  const float alpha = curvature();
   for (uint32_t v = begin; v < end; ++v) {
     const float size = std::max(1.0F, 1.0F + mesh_.position[v].w);
-    force_.set(v, force_.at(v) * (alpha * (1.0F / (size * size * (size * size)))));
+    const float part = 1.0F / (size * size);
+    force_.set(v, force_.at(v) * ((curvature() * part + smoothing()) * part));
   }
 }
 
@@ -357,6 +360,7 @@ kernels::SurfaceForces Dynamics::surface_forces(int stage, const Guide& guide) {
           static_cast<float>(mesh_.delta) * model_.attraction,
           guide.iso,
           mesh_.sizing != nullptr,
+          smoothing(),
           kFacets,
           kStar,
           from_star_.data()};

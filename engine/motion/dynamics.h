@@ -95,6 +95,7 @@ class Dynamics {
   void run_stage(int stage, const Guide& guide);
   void gather_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end);
   float curvature() const;
+  float smoothing() const;
   void scale_by_size(uint32_t begin, uint32_t end);
   void image_forces(int stage, const Guide& guide, uint32_t begin, uint32_t end);
   // From the last stage to the end of the step: where nothing lies between them in one pass.

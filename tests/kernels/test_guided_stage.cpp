@@ -91,6 +91,7 @@ kernels::SurfaceForces sized(Stage& s) {
   }
   kernels::SurfaceForces f = s.forces();
   f.sized = true;
+  f.smoothing = 0.2F;
   f.facets = 0.25F;
   f.star = 0.75F;
   f.from_star = s.from_star.data();

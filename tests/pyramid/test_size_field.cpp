@@ -84,11 +84,11 @@ TEST_CASE("sizes go with the root of the radius and of the tolerance", "[size_fi
   CHECK(static_cast<double>(on_surface(10, 0.05)) == Approx(edge / 1.5).epsilon(0.25));
 }
 
-TEST_CASE("noise is told from shape", "[size_field]") {
+TEST_CASE("noise is told from shape, also where values are clipped", "[size_field]") {
   const Image clean = ball(16);
   const plc::SizeField of_clean = field_of(clean);
   CHECK(of_clean.noise() < 0.005F);
-  for (const float deviation : {0.01F, 0.04F}) {
+  for (const float deviation : {0.01F, 0.04F, 0.1F}) {
     Image noisy = clean;
     samples::Random random(3);
     for (float& value : noisy.values) {
@@ -97,7 +97,10 @@ TEST_CASE("noise is told from shape", "[size_field]") {
       for (int k = 0; k < 12; ++k) sum += random.uniform(0, 1);
       value += deviation * static_cast<float>(sum);
     }
-    const plc::SizeField field = field_of(noisy);
+    plc::ImageView view = noisy.view();
+    view.form = {plc::ImageType::kF32, 0, 0, 0, 1};
+    plc::SizeField field;
+    REQUIRE(field.build(view, 0.5F, 1, {}, samples::kSerial).ok());
     // Values rise by 0.25 a delta.
     CHECK(field.noise() == Approx(deviation / 0.25F).epsilon(0.15));
     const float clean_size = at(of_clean, kMiddle + 16, kMiddle, kMiddle);
