@@ -8,7 +8,8 @@
 
 namespace plc {
 
-// A voxel whose value lies in [0,1] as it is: those of every level but a borrowed I_0.
+// A voxel whose value lies in [0,1] as it is: those of the levels above I_0, and of an I_0
+// whose window floats do not hold.
 struct UnitVoxel {
   float value;
 };
@@ -16,7 +17,8 @@ struct UnitVoxel {
 // What an image's voxels are in memory: UnitVoxel, or the caller's own, uint8_t .. float.
 enum class ImageType : uint8_t { kUnit, kU8, kI16, kU16, kF32 };
 
-// How stored voxels become an image: I_0 is the caller's volume, read where it lies, never copied.
+// How stored voxels become an image: I_0 is the caller's volume, read where it lies; of 32-bit
+// integers a copy in floats.
 struct VoxelForm {
   ImageType type = ImageType::kUnit;
   int32_t pad = 0;      // voxels on every side that the image has and the memory has not; kUnit: 0

@@ -68,8 +68,8 @@ Status build_gradient(const PyramidLevel& level, const std::array<double, 3>& vo
   try {
     const auto voxels = static_cast<size_t>(level.dims[0] * level.dims[1] * level.dims[2]);
     gradient.resize_uninitialized(voxels);
-    // The Sobel rows of a borrowed I_0 are read from a copy in floats, a quarter of the gradient's
-    // own size.
+    // The Sobel rows of an I_0 that has a form are read from a copy in floats, a quarter of the
+    // gradient's own size.
     Buffer<float> copy;
     const float* values = level.values.data();
     if (level.form.type != ImageType::kUnit || level.values.empty()) {

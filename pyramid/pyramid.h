@@ -17,8 +17,9 @@ class CachedBricks;
 class ReducedBricks;
 
 // One image I_h, values in [0,1], x fastest. I_0 is the caller's volume where it lies: borrowed, in
-// its own type, padded and normalised as it is read. Where that cannot be (see build_pyramid) and
-// on the levels above it is a buffer of floats; or, of a volume of bricks, bricks, too.
+// its own type, padded and normalised as it is read, or a copy of its integers in floats, read so.
+// Where that cannot be (see build_pyramid) and on the levels above it is a buffer of floats; or, of
+// a volume of bricks, bricks, too.
 struct PyramidLevel {
   std::array<int64_t, 3> dims{0, 0, 0};  // M_h, N_h, P_h (11)
   std::array<double, 3> voxel{0, 0, 0};  // mu/M_h, nu/N_h, pi/P_h, mm

@@ -301,10 +301,11 @@ float Dynamics::smoothing() const {
 
 // Of an adaptive mesh: the bits of guided_stage.h.
 void Dynamics::scale_by_size(uint32_t begin, uint32_t end) {
+  const float alpha = curvature(), more = smoothing();
   for (uint32_t v = begin; v < end; ++v) {
     const float size = std::max(1.0F, 1.0F + mesh_.position[v].w);
     const float part = 1.0F / (size * size);
-    force_.set(v, force_.at(v) * ((curvature() * part + smoothing()) * part));
+    force_.set(v, force_.at(v) * ((alpha * part + more) * part));
   }
 }
 
