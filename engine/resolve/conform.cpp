@@ -122,7 +122,8 @@ Status divide_faces(Mesh& mesh, const Schedule& schedule, OperationCounts& count
     Obstacles::Meeting with_obstacle;
     if (mesh.obstacles != nullptr && mesh.obstacles->find_meeting(mesh, with_obstacle)) break;
     if (meeting.empty()) return {};
-    if (mesh.sizing == nullptr || i == kTries) break;
+    if (mesh.sizing == nullptr) break;
+    if (i == kTries) std::fill(whole.begin(), whole.end(), uint8_t{1});
     for (const auto& face : meeting) {
       for (const uint32_t v : face) mark_given(order[v], ends, whole);
     }

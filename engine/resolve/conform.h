@@ -34,9 +34,8 @@ inline constexpr int kConformPasses = 20;
 // iteration - and details below delta: deletions merge vertices at mid-points, which rounds corners
 // off. Faces that need no operation stay as they are.
 //
-// Errors, with the mesh spoilt: kInvalidData when nothing is left, or faces are so thin that
-// rounding makes them meet when divided (in an adaptive mesh: others, too, when those are left
-// whole); kOutOfMemory for too many vertices; kInternal when the result is not embedded; throws
+// Errors, with the mesh spoilt: kInvalidData when nothing is left - then it has no vertices - or
+// faces of a uniform mesh are so thin that rounding makes them meet when divided; kOutOfMemory for too many vertices; kInternal when the result is not embedded; throws
 // std::bad_alloc.
 Status conform(Mesh& mesh, double delta, const Schedule& schedule, OperationCounts& counts);
 

@@ -113,7 +113,7 @@ Status start_late_bubbles(const ImageObject& object, const MissedPlaces& places,
       return s;
     }
     Status s = conform(part, mesh.delta, schedule, counts);
-    if (s.code() == ErrorCode::kInvalidData) continue;  // nothing is left of it
+    if (part.vertex_count() == 0) continue;  // nothing is left of it
     if (!s.ok()) return s;
     (kind == Missed::kPart ? started.bubbles : started.cavities) += count;
     started.volume += volume_of(part, schedule);

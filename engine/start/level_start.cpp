@@ -316,9 +316,8 @@ Status start_surface(const StartSpec& spec, const LevelImage& level, double delt
   // A patch is fitted to what it is a part of when its level starts.
   if (!needs_conforming(spec.init) || mesh.is_patch()) return {};
   Status s = conform(mesh, delta, schedule, counts);
-  if (s.code() != ErrorCode::kInvalidData || spec.init == Init::kMesh) return s;
-  mesh.clear();  // nothing that this level resolves
-  return {};
+  const bool resolved = mesh.vertex_count() != 0 || spec.init == Init::kMesh;
+  return resolved ? s : Status();
 }
 
 }  // namespace plc

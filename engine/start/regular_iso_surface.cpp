@@ -5,6 +5,7 @@
 
 #include "engine/guard/self_meeting.h"
 #include "engine/resolve/refinement.h"
+#include "engine/start/thinning.h"
 #include "engine/transform/deletion.h"
 #include "pyramid/memory.h"
 
@@ -15,12 +16,6 @@ namespace {
 // Crossings are merged anew, but for voxels whose faces have met, so many times; then not at all.
 constexpr int kTries = 8;
 
-bool can_contract(const Mesh& mesh, const Edge& e) {
-  return mesh.valence(e.a) > 3 && mesh.valence(e.b) > 3 &&
-         uint64_t{mesh.valence(e.u)} + mesh.valence(e.v) <= uint64_t{mesh.most_neighbors} + 4 &&
-         common_neighbors(mesh, e.u, e.v).size() == 2;
-}
-
 // Puts merged vertices where the value is iso: the mean of crossings around a thin part lies inside
 // it, and the part would start too thin to be held.
 class Projection {
@@ -28,12 +23,7 @@ class Projection {
   Projection(const ImageView& image, const LatticeValues& values, float iso)
       : image_(image), values_(values), iso_(iso) {}
 
-  // voxel, here and below: the number of the one inside that the places belong to. Whether they lie
-  // across it from each other.
-  bool across(Vec3 p, Vec3 q, uint64_t voxel) const {
-    const Vec3 from = place(voxel);
-    return dot(in_voxels(p) - from, in_voxels(q) - from) < 0;
-  }
+  // voxel: the number of the one inside that the place belongs to.
   Vec3 project(Vec3 p, uint64_t voxel) const {
     const Vec3 from = place(voxel), way = in_voxels(p) - from;
     const float at_voxel = value(from), at_p = value(from + way);
@@ -118,9 +108,6 @@ class Merging {
     for (uint32_t k = 0; k < mesh_.valence(v); ++k) {
       const Edge e = edge_at(mesh_, v, k);
       if (voxel_[e.v] != voxel_[v] || !can_contract(mesh_, e)) continue;
-      if (mesh_.sizing != nullptr && projection_.across(mesh_.at(v), mesh_.at(e.v), voxel_[v])) {
-        continue;
-      }
       const auto of_v = static_cast<float>(merged_[v]), of_w = static_cast<float>(merged_[e.v]);
       const Vec3 mean = (mesh_.at(v) * of_v + mesh_.at(e.v) * of_w) * (1 / (of_v + of_w));
       merged_[v] += merged_[e.v];
@@ -156,6 +143,11 @@ bool set_apart(const Mesh& mesh, const Schedule& schedule, const Vector<uint64_t
 
 Status regular_iso_surface(const ImageObject& object, const LatticeValues& values,
                            const Schedule& schedule, Mesh& mesh) {
+  if (mesh.sizing != nullptr) {
+    if (Status s = iso_surface(object, values, schedule, mesh); !s.ok()) return s;
+    thin_out(mesh, schedule);
+    return {};
+  }
   Vector<uint64_t> voxel;
   if (Status s = iso_surface(object, values, schedule, mesh, &voxel); !s.ok()) {
     return s;

@@ -1,13 +1,13 @@
-// The iso-surface with vertices about a voxel apart: a quarter of those of iso_surface.h, so that
-// little is left to be done before it is as coarse as the mesh. Late bubbles, the initial model of
-// figure 23, and the surfaces of masks and labels start from it.
+// The iso-surface with about as many vertices as the mesh is to have, so that little is left to be
+// done. Late bubbles, the initial model of figure 23, and the surfaces of masks and labels start
+// from it.
 //
-// After Treece, Prager and Gee, "Regularised marching tetrahedra" (Computers & Graphics 23, 1999):
-// the crossings on the edges of one voxel that is inside are merged into one vertex, on the
-// iso-surface, where the surface stays a manifold. They keep crossings apart beforehand, by cases;
-// here crossings are merged as long as edges may be contracted, and apart again where the faces
-// then meet. In an adaptive mesh crossings across a voxel from each other stay apart, too: they are
-// of the two sheets of a part of one voxel.
+// In an adaptive mesh the crossings of iso_surface.h are thinned out to the sizes (thinning.h). In
+// a uniform one, whose edges are about a voxel long, those on the edges of one voxel that is inside
+// are merged into one vertex, on the iso-surface, where the surface stays a manifold: a quarter of
+// the vertices. After Treece, Prager and Gee, "Regularised marching tetrahedra" (Computers &
+// Graphics 23, 1999). They keep crossings apart beforehand, by cases; here crossings are merged as
+// long as edges may be contracted, and apart again where the faces then meet.
 #pragma once
 #include "engine/base/schedule.h"
 #include "engine/start/iso_surface.h"

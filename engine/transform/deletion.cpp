@@ -34,6 +34,12 @@ Neighbors merged_ring(const Mesh& mesh, const Edge& e) {
   return ring;
 }
 
+bool can_contract(const Mesh& mesh, const Edge& e) {
+  return mesh.valence(e.a) > 3 && mesh.valence(e.b) > 3 &&
+         uint64_t{mesh.valence(e.u)} + mesh.valence(e.v) <= uint64_t{mesh.most_neighbors} + 4 &&
+         common_neighbors(mesh, e.u, e.v).size() == 2;
+}
+
 void delete_edge(Mesh& mesh, const Edge& e, Vec3 place) {
   assert(has_edge(mesh, e) && common_neighbors(mesh, e.u, e.v).size() == 2);
   assert(mesh.valence(e.a) > 3 && mesh.valence(e.b) > 3);

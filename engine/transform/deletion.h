@@ -10,6 +10,9 @@ Neighbors common_neighbors(const Mesh& mesh, uint32_t u, uint32_t v);
 // The ring that the merged vertex will have.
 Neighbors merged_ring(const Mesh& mesh, const Edge& edge);
 
+// Whether the surface stays a manifold, and no vertex gets too many neighbours.
+bool can_contract(const Mesh& mesh, const Edge& edge);
+
 // Merges v into u at `place`. u and v have exactly two common neighbours, a and b, of valence
 // above 3. Changes the rings of u, the neighbours of v, a and b.
 void delete_edge(Mesh& mesh, const Edge& edge, Vec3 place);

@@ -59,6 +59,34 @@ TEST_CASE("a ball has a quarter of the vertices, and its place and volume",
   CHECK(samples::volume(both.regular) == Approx(samples::volume(both.plain)).epsilon(0.02));
 }
 
+TEST_CASE("an adaptive mesh starts with edges of its sizes, with vertices of the iso-surface",
+          "[regular_iso_surface]") {
+  const samples::Volume ball = samples::sphere_potential(samples::empty_volume({40, 40, 40}), 0.35);
+  const plc::ImageView view = view_of(ball);
+  const plc::ImageObject object{view, 0.5F, true};
+  plc::Sizing sizing;
+  const plc::Schedule schedule(1);
+  REQUIRE(sizing.field.build(view, 0.5F, 1, {}, schedule).ok());
+  Mesh mesh;
+  mesh.sizing = &sizing;
+  REQUIRE(plc::regular_iso_surface(object, plc::values_of(object), schedule, mesh).ok());
+  CHECK(plc::broken_invariant(mesh) == "");
+  CHECK(mesh.in_order());
+  CHECK(samples::meeting_count(mesh) == 0);
+  CHECK(samples::euler(mesh) == 2);
+  double edges = 0, sizes = 0;
+  for (uint32_t v = 0; v < mesh.slots(); ++v) {
+    for (uint32_t k = 0; k < mesh.valence(v); ++k) {
+      const uint32_t w = mesh.neighbor(v, k);
+      const float edge = length(mesh.at(w) - mesh.at(v)), size = mesh.size_between(v, w);
+      CHECK(edge < plc::kMaxEdge * size);
+      edges += static_cast<double>(edge), sizes += static_cast<double>(size);
+    }
+    CHECK(length(mesh.at(v) - plc::Vec3{19.5F, 19.5F, 19.5F}) == Approx(14).margin(0.15));
+  }
+  CHECK(edges / sizes == Approx(plc::kMeanEdge).epsilon(0.1));
+}
+
 TEST_CASE("whatever the voxels are, the topology stays and nothing meets",
           "[regular_iso_surface]") {
   for (const uint64_t seed : {1U, 2U, 3U, 4U}) {
@@ -72,6 +100,12 @@ TEST_CASE("whatever the voxels are, the topology stays and nothing meets",
     CHECK(samples::component_count(both.regular) == samples::component_count(both.plain));
     CHECK(both.regular.vertex_count() * 2 < both.plain.vertex_count());
     CHECK(plc::state_hash(both.regular) == plc::state_hash(again.regular));
+    CHECK(plc::broken_invariant(both.adaptive) == "");
+    CHECK(samples::meeting_count(both.adaptive) == 0);
+    CHECK(samples::euler(both.adaptive) == samples::euler(both.plain));
+    CHECK(samples::component_count(both.adaptive) == samples::component_count(both.plain));
+    CHECK(both.adaptive.vertex_count() * 1.5 < both.plain.vertex_count());
+    CHECK(plc::state_hash(both.adaptive) == plc::state_hash(again.adaptive));
   }
 }
 
