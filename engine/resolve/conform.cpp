@@ -102,12 +102,17 @@ void mark_given(uint32_t v, const Ends& ends, Vector<uint8_t>& whole) {
   for (const uint32_t end : ends[v - whole.size()]) mark_given(end, ends, whole);
 }
 
-// Where divided faces meet, in single precision, they are left whole in an adaptive mesh: there the
-// guards look as far as the longest edge asks for, and divide it if they can.
+Status too_thin() {
+  return {ErrorCode::kInvalidData,
+          "the surface has faces too thin to be divided in single precision"};
+}
+
+// Where divided faces meet, in single precision, they are left whole: the guards look as far as the
+// longest edge asks for (measure_edges), and divide it if they can.
 Status divide_faces(Mesh& mesh, const Schedule& schedule, OperationCounts& counts) {
   constexpr int kTries = 8;
   const uint32_t given = mesh.slots();
-  const Mesh undivided = mesh.sizing == nullptr ? Mesh() : mesh.copy();
+  const Mesh undivided = mesh.copy();
   const OperationCounts before = counts;
   Vector<uint8_t> whole(given, 0);
   for (int i = 0;; ++i) {
@@ -120,9 +125,10 @@ Status divide_faces(Mesh& mesh, const Schedule& schedule, OperationCounts& count
     mesh.renumber(order, schedule);
     const auto meeting = meeting_faces(mesh, schedule);
     Obstacles::Meeting with_obstacle;
-    if (mesh.obstacles != nullptr && mesh.obstacles->find_meeting(mesh, with_obstacle)) break;
+    if (mesh.obstacles != nullptr && mesh.obstacles->find_meeting(mesh, with_obstacle)) {
+      return too_thin();
+    }
     if (meeting.empty()) return {};
-    if (mesh.sizing == nullptr) break;
     if (i == kTries) std::fill(whole.begin(), whole.end(), uint8_t{1});
     for (const auto& face : meeting) {
       for (const uint32_t v : face) mark_given(order[v], ends, whole);
@@ -130,8 +136,6 @@ Status divide_faces(Mesh& mesh, const Schedule& schedule, OperationCounts& count
     mesh.take(undivided.copy());
     counts = before;
   }
-  return {ErrorCode::kInvalidData,
-          "the surface has faces too thin to be divided in single precision"};
 }
 
 double longest_edge(const Mesh& mesh) {
@@ -146,7 +150,7 @@ void settle(Mesh& mesh, const Executor& executor, Detection& detection, Resoluti
   mesh.renumber(morton_order(mesh, executor), executor);
   detection.restart();
   resolution.restart();
-  if (mesh.sizing != nullptr) measure_edges(mesh);
+  measure_edges(mesh);
   for (int pass = 0; pass < kConformPasses; ++pass) {
     const int64_t before = counts.transformations();
     // Nothing freezes here: the passes end where one changes nothing, or there are too many.
@@ -190,6 +194,12 @@ Status conform(Mesh& mesh, double delta, const Schedule& schedule, OperationCoun
   if (mesh.vertex_count() == 0) {
     return {ErrorCode::kInvalidData,
             "nothing is left of the surface at this resolution: it is too small or too thin"};
+  }
+  if (mesh.sizing == nullptr) {
+    constexpr float kRounding = 1.001F;
+    measure_edges(mesh);
+    if (mesh.stretch > kRounding) return too_thin();
+    mesh.stretch = 1;
   }
   assert(broken_invariant(mesh).empty());
   if (const auto meeting = meeting_faces(mesh, schedule); !meeting.empty()) {

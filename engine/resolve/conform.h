@@ -35,7 +35,8 @@ inline constexpr int kConformPasses = 20;
 // off. Faces that need no operation stay as they are.
 //
 // Errors, with the mesh spoilt: kInvalidData when nothing is left - then it has no vertices - or
-// faces of a uniform mesh are so thin that rounding makes them meet when divided; kOutOfMemory for too many vertices; kInternal when the result is not embedded; throws
+// faces are so thin that rounding makes them meet when divided, and the guards refuse it, too;
+// kOutOfMemory for too many vertices; kInternal when the result is not embedded; throws
 // std::bad_alloc.
 Status conform(Mesh& mesh, double delta, const Schedule& schedule, OperationCounts& counts);
 
