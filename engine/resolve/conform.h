@@ -15,17 +15,18 @@ inline constexpr int kConformPasses = 20;
 
 // By the model's own transformations and nothing else:
 //   1. creations on the longest edge until none violates (2): the geometry stays, and faces come
-//      within the reach of the guards (kFaceReach);
+//      within the reach of the guards (kFaceReach). Faces that would meet, in single precision, are
+//      left whole, and the guards look farther;
 //   2. where all edges are far below delta: figure 9 for a delta that fits them, then for sqrt 3
 //      times that and so on. At the full delta at once the guards would look at the faces of a
 //      hundred vertices for every deletion;
 //   3. figure 9 over all vertices until a pass changes nothing.
 //
 // On entry the mesh is closed, oriented and embedded (mesh_import.h, iso_surface.h), and meets none
-// of its obstacles, which it does not on return either; delta > 0 in
-// mesh units. On return it is closed, oriented, embedded - tested exactly, on all faces - and at
-// rest, with ids along a Morton curve, mesh.delta = delta, every vertex due for a check. counts
-// grows by what was done. The same bits for any number of threads.
+// of its obstacles, which it does not on return either; delta > 0 in mesh units. On return it is
+// closed, oriented, embedded - tested exactly, on all faces - and at rest, with ids along a Morton
+// curve, mesh.delta = delta, every vertex due for a check. counts grows by what was done. The same
+// bits for any number of threads.
 //
 // Promised is the embedding, no more. (1) and (2) hold but where the guards refuse what an edge
 // asks for: 1 edge in 500,000 on random images violated (1), none (2). (3): a few pairs stay where

@@ -316,6 +316,7 @@ Status start_surface(const StartSpec& spec, const LevelImage& level, double delt
   // A patch is fitted to what it is a part of when its level starts.
   if (!needs_conforming(spec.init) || mesh.is_patch()) return {};
   Status s = conform(mesh, delta, schedule, counts);
+  // Where nothing is left, a finer level may resolve it; but for a mesh that was given.
   const bool resolved = mesh.vertex_count() != 0 || spec.init == Init::kMesh;
   return resolved ? s : Status();
 }

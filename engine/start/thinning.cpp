@@ -1,5 +1,7 @@
 #include "engine/start/thinning.h"
 
+#include <numeric>
+
 #include "engine/base/constants.h"
 #include "engine/guard/self_meeting.h"
 #include "engine/resolve/refinement.h"
@@ -10,7 +12,7 @@ namespace plc {
 
 namespace {
 
-// In sizes.
+// In sizes: how near to one that stays others are merged into it.
 constexpr float kThinReach = 1.05F;
 // The first part of the way: what meets when it is thinned out further stays as fine as that. And
 // it is faster.
@@ -25,7 +27,7 @@ class Thinning {
       : mesh_(mesh), stays_(stays), reach_(reach), into_(mesh.slots()) {}
 
   void run() {
-    for (uint32_t v = 0; v < mesh_.slots(); ++v) into_[v] = v;
+    std::iota(into_.begin(), into_.end(), 0U);
     for (uint32_t v = 0; v < mesh_.slots(); ++v) {
       while (mesh_.alive(v) && stays_[v] == 0 && merge_one(v)) {
       }
