@@ -25,16 +25,17 @@ uint32_t lowest_bit(uint32_t mask) {
 
 // The index of a listed face, whichever of its corners comes first here.
 uint32_t MeetingSearch::index_of(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) const {
-  const auto before = [&](uint32_t x, uint32_t y) { return !mesh.marked(y) || x < y; };
-  // Brings the marked corner of the lowest id to the front.
-  while (!mesh.marked(a) || !before(a, b) || !before(a, c)) {
+  // Brings the corner that it is listed with to the front.
+  while (!mesh.marked(a) || !mesh.precedes(a, b) || !mesh.precedes(a, c)) {
     const uint32_t first = a;
     a = b;
     b = c;
     c = first;
   }
-  const auto i = static_cast<size_t>(std::lower_bound(vertices_.begin(), vertices_.end(), a) -
-                                     vertices_.begin());
+  const auto at =
+      std::lower_bound(vertices_.begin(), vertices_.end(), where_listed(mesh, a),
+                       [&](uint32_t v, uint64_t place) { return where_listed(mesh, v) < place; });
+  const auto i = static_cast<size_t>(at - vertices_.begin());
   uint32_t f = begin_[i];
   while (f + 1 < begin_[i + 1] && (face(f)[1] != b || face(f)[2] != c)) ++f;
   return f;
@@ -159,16 +160,49 @@ void MeetingSearch::search(const Mesh& mesh, std::span<const uint32_t> stars,
   for (size_t task = 0; task < tasks; ++task) {
     pairs_.insert(pairs_.end(), found_[task].begin(), found_[task].end());
   }
+  sort_pairs(mesh);
+}
+
+// A number by which faces lie in the order of their marked corners of the lowest ids, and around
+// each in that of its ring, whatever they are listed with.
+uint64_t MeetingSearch::place_of(const Mesh& mesh, uint32_t f) const {
+  const uint32_t* abc = face(f);
+  size_t first = 3;
+  for (size_t k = 0; k < 3; ++k) {
+    if (mesh.marked(abc[k]) && (first == 3 || abc[k] < abc[first])) first = k;
+  }
+  const uint32_t v = abc[first], w = abc[(first + 1) % 3];
+  uint32_t slot = 0;
+  while (mesh.rings.slot(v, slot) != w) ++slot;
+  return uint64_t{v} << 32 | slot;
+}
+
+void MeetingSearch::sort_pairs(const Mesh& mesh) {
+  if (pairs_.empty()) return;
   // Faces across an edge are found at both of its ends.
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  if (mesh.strays == nullptr) return;
+  struct Placed {
+    std::array<uint64_t, 2> places;
+    FacePair pair;
+  };
+  Vector<Placed> placed;
+  for (const auto& [f, g] : pairs_) {
+    const uint64_t of_f = place_of(mesh, f), of_g = place_of(mesh, g);
+    if (of_f < of_g) placed.push_back({{of_f, of_g}, {f, g}});
+    if (of_f > of_g) placed.push_back({{of_g, of_f}, {g, f}});
+  }
+  std::sort(placed.begin(), placed.end(),
+            [](const Placed& l, const Placed& r) { return l.places < r.places; });
+  for (size_t i = 0; i < placed.size(); ++i) pairs_[i] = placed[i].pair;
 }
 
 const Vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t slots,
                                             const Float4* positions, const uint8_t* marked,
                                             const Executor& executor, const Float4* before,
-                                            const uint32_t* held) {
-  mesh_ = {rings, slots, positions, marked, before, nullptr, held};
+                                            const uint32_t* held, const uint8_t* strays) {
+  mesh_ = {rings, slots, positions, marked, before, nullptr, held, strays};
   pairs_.clear();
   list_vertices(mesh_);
   list_faces(mesh_, executor);

@@ -25,7 +25,7 @@ namespace plc {
 // slow. Only the faces around marked vertices are listed.
 //
 //   buffer    bytes per listed face   what
-//   faces     12                      three ids, the first marked vertex in front, in its order
+//   faces     12                      three ids, that which they are listed with in front
 //   boxes     27.4                    per node: boxes of 8 faces or nodes, lane by lane
 //   moved     0.15                    per node: in which of the 8 a face has moved
 //   vertices  4 per vertex            marked vertices and their neighbours
@@ -41,10 +41,14 @@ class MeetingSearch {
   // faces that meet elsewhere than in what they share (triangle_intersection.h: exact, faces of
   // zero area left out), both have a marked vertex, and one has a vertex that has moved; sorted,
   // until the next call. The same for any executor. The mesh is closed and a manifold. held: of
-  // a patch (mesh.h); faces of absent vertices meet nothing; NULL: there are none.
+  // a patch (mesh.h); faces of absent vertices meet nothing; NULL: there are none. strays: per id,
+  // not 0 where it does not tell where the vertex is; NULL: nowhere. They are listed behind a
+  // neighbour: a face far from those beside it makes the boxes above it large, and a few such in a
+  // hundred make searches several times as slow. Results are the same.
   const Vector<FacePair>& find(const RingView& rings, uint32_t slots, const Float4* positions,
                                const uint8_t* marked, const Executor& executor,
-                               const Float4* before = nullptr, const uint32_t* held = nullptr);
+                               const Float4* before = nullptr, const uint32_t* held = nullptr,
+                               const uint8_t* strays = nullptr);
 
   // After find(), when a few vertices have moved since: the pairs that find() would list, of which
   // one face has one of these vertices. changed: their ids, some twice; no other has moved since
@@ -73,11 +77,18 @@ class MeetingSearch {
     const uint8_t* changed =
         nullptr;  // a byte per vertex, not 0 where it has moved; or NULL: see before
     const uint32_t* held = nullptr;
+    const uint8_t* strays = nullptr;
     bool absent(uint32_t v) const { return held != nullptr && held[v] == plc::Mesh::kAbsent; }
     bool marked(uint32_t v) const { return marks == nullptr || marks[v] != 0; }
     bool marked(const uint32_t* abc) const {
       return marked(abc[0]) || marked(abc[1]) || marked(abc[2]);
     }
+    // Whether a face of a marked x and of y is not listed with y.
+    bool precedes(uint32_t x, uint32_t y) const {
+      if (!marked(y)) return true;
+      return stray(x) == stray(y) ? x < y : stray(y);
+    }
+    bool stray(uint32_t v) const { return strays != nullptr && strays[v] != 0; }
     // A face of the surface with a marked corner.
     bool listed(const uint32_t* abc) const {
       return marked(abc) && !absent(abc[0]) && !absent(abc[1]) && !absent(abc[2]);
@@ -92,10 +103,13 @@ class MeetingSearch {
   };
   using Pairs = Vector<FacePair>;
 
+  // Where a vertex is listed: vertices lie in the order of these numbers.
+  static uint64_t where_listed(const Mesh& mesh, uint32_t v);
   static Box3 all_lanes(const BoxLanes& boxes);
 
   void list_vertices(const Mesh& mesh);
   void sort_vertices(uint32_t slots);
+  void place_strays(const Mesh& mesh);
   void list_faces(const Mesh& mesh, const Executor& executor);
   void build_leaves(const Mesh& mesh, const Executor& executor);
   void build_level(size_t level, const Executor& executor);
@@ -113,10 +127,12 @@ class MeetingSearch {
                      Pairs& pairs) const;
   void search(const Mesh& mesh, std::span<const uint32_t> stars, const Executor& executor);
   uint32_t index_of(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) const;
+  uint64_t place_of(const Mesh& mesh, uint32_t f) const;
+  void sort_pairs(const Mesh& mesh);
 
   Spares<Scratch> scratches_;
   Mesh mesh_;                  // of the last find()
-  Buffer<uint32_t> vertices_;  // ascending
+  Buffer<uint32_t> vertices_;  // by where_listed()
   Buffer<uint8_t> listed_;     // per vertex
   Buffer<uint8_t> changed_;    // per vertex; 0 between calls
   Vector<uint32_t> stars_;     // around which faces are tested against each other

@@ -65,6 +65,7 @@ void MeetingSearch::list_vertices(const Mesh& mesh) {
   if (mesh.marks != nullptr) {
     for_set_bytes(mesh.marks, mesh.slots, with_neighbors);
     sort_vertices(mesh.slots);
+    if (mesh.strays != nullptr) place_strays(mesh);
     return;
   }
   for (uint32_t v = 0; v < mesh.slots; ++v) {
@@ -83,8 +84,56 @@ void MeetingSearch::sort_vertices(uint32_t slots) {
   for_set_bytes(listed_.data(), slots, [&](uint32_t v) { vertices_.push_back(v); });
 }
 
+uint64_t MeetingSearch::where_listed(const Mesh& mesh, uint32_t v) {
+  if (!mesh.stray(v)) return uint64_t{v} << 32;
+  // Behind the first neighbour that is none, or the first neighbour of a neighbour.
+  const auto neighbor = [&](uint32_t w) {
+    uint32_t first = plc::Mesh::kAbsent;
+    for (uint32_t k = 0; k < mesh.rings.valence[w]; ++k) {
+      const uint32_t x = mesh.rings.slot(w, k);
+      if (!mesh.stray(x)) first = std::min(first, x);
+    }
+    return first;
+  };
+  uint32_t behind = neighbor(v);
+  for (uint32_t k = 0; k < mesh.rings.valence[v] && behind == plc::Mesh::kAbsent; ++k) {
+    behind = neighbor(mesh.rings.slot(v, k));
+  }
+  if (behind == plc::Mesh::kAbsent) behind = v;
+  return uint64_t{behind} << 32 | (uint64_t{v} + 1);
+}
+
+// The listed vertices ascend.
+void MeetingSearch::place_strays(const Mesh& mesh) {
+  struct Listed {
+    uint64_t place;
+    uint32_t vertex;
+  };
+  Vector<Listed> strays;
+  Vector<uint32_t> others;
+  others.reserve(vertices_.size());
+  for (const uint32_t v : vertices_) {
+    if (mesh.stray(v)) {
+      strays.push_back({where_listed(mesh, v), v});
+    } else {
+      others.push_back(v);
+    }
+  }
+  std::sort(strays.begin(), strays.end(),
+            [](const Listed& l, const Listed& r) { return l.place < r.place; });
+  vertices_.clear();
+  auto stray = strays.begin();
+  for (const uint32_t v : others) {
+    for (; stray != strays.end() && stray->place < uint64_t{v} << 32; ++stray) {
+      vertices_.push_back(stray->vertex);
+    }
+    vertices_.push_back(v);
+  }
+  for (; stray != strays.end(); ++stray) vertices_.push_back(stray->vertex);
+}
+
 void MeetingSearch::list_faces(const Mesh& mesh, const Executor& executor) {
-  // Visits each face once: at that of its marked corners which has the lowest id.
+  // Visits each face once.
   const auto for_faces = [&](size_t begin, size_t end, const auto& vertex, const auto& face) {
     for (size_t i = begin; i < end; ++i) {
       const uint32_t v = vertices_[i];
@@ -96,7 +145,7 @@ void MeetingSearch::list_faces(const Mesh& mesh, const Executor& executor) {
         const uint32_t a = b;
         b = mesh.rings.slot(v, k + 1 == count ? 0 : k + 1);
         if (mesh.absent(a) || mesh.absent(b)) continue;
-        if ((v < a || !mesh.marked(a)) && (v < b || !mesh.marked(b))) face(v, a, b);
+        if (mesh.precedes(v, a) && mesh.precedes(v, b)) face(v, a, b);
       }
     }
   };

@@ -50,7 +50,7 @@ int64_t MotionGuard::take_back(const Buffer<Float4>& before, SpatialHash& hash,
   const size_t first = back.size();
   const Vector<FacePair>* pairs =
       &search_.find(mesh_.rings(), mesh_.slots(), mesh_.position.data(), risk_.data(), executor_,
-                    before.data(), mesh_.held_ids());
+                    before.data(), mesh_.held_ids(), strays_.data());
   // All corners of two faces that meet go back: what can meet then has a corner among them.
   for (size_t done = first;; done = back.size()) {
     for (const auto& [f, g] : *pairs) {
@@ -60,9 +60,10 @@ int64_t MotionGuard::take_back(const Buffer<Float4>& before, SpatialHash& hash,
     const bool pressed = mesh_.obstacles != nullptr && keep_clear(before, hash, back);
     if (back.size() == done) break;
     // What obstacles hold is at risk where it was not listed.
-    pairs = pressed ? &search_.find(mesh_.rings(), mesh_.slots(), mesh_.position.data(),
-                                    risk_.data(), executor_, before.data(), mesh_.held_ids())
-                    : &search_.find_changed(back.data() + done, back.size() - done, executor_);
+    pairs = pressed
+                ? &search_.find(mesh_.rings(), mesh_.slots(), mesh_.position.data(), risk_.data(),
+                                executor_, before.data(), mesh_.held_ids(), strays_.data())
+                : &search_.find_changed(back.data() + done, back.size() - done, executor_);
   }
   return static_cast<int64_t>(back.size() - first);
 }

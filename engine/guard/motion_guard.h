@@ -20,11 +20,19 @@ namespace plc {
 // face that has moved is tested against those.
 //
 //   risk           1      flags         of risk.h; attached to the mesh
+//   strays         1      id            whether it was created since restart(); attached, too. It
+//   is
+//                                       not saved: results do not depend on it
 class MotionGuard {
  public:
   MotionGuard(Mesh& mesh, const Executor& executor)
-      : mesh_(mesh), executor_(executor), risk_(mesh, kNearRisk, VertexBytes::Reset::kCreated) {}
+      : mesh_(mesh),
+        executor_(executor),
+        risk_(mesh, kNearRisk, VertexBytes::Reset::kCreated),
+        strays_(mesh, 1, VertexBytes::Reset::kCreated) {}
 
+  // The ids tell where vertices are: the mesh has been renumbered.
+  void restart() { strays_.fill(0); }
   // blocks: of kRingLanes vertices, with all that have moved and all their neighbours. Finds where
   // the surface folds now, against the normals of the movement's start.
   void find_folds(const Vector<uint32_t>& blocks);
@@ -62,6 +70,7 @@ class MotionGuard {
   Mesh& mesh_;
   const Executor& executor_;
   VertexBytes risk_;
+  VertexBytes strays_;
   Buffer<uint8_t> folds_;
   Vector<Vector<uint32_t>> found_;  // newly folded, by task
   Vector<uint32_t> newly_folded_;

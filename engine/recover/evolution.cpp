@@ -35,6 +35,7 @@ void Evolution::restart() {
   detection_.restart();
   resolution_.restart();
   sleep_.restart();
+  guard_.restart();
 }
 
 Status Evolution::iterate(const Guide& guide, Seconds& seconds, OperationCounts& counts) {

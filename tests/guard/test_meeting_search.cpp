@@ -1,6 +1,7 @@
 #include "engine/guard/meeting_search.h"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -226,6 +227,54 @@ TEST_CASE("of pairs that meet those are found of which a face has moved", "[meet
     if (percent == 2) CHECK(wanted.size() < meeting / 2);
     if (percent == 40) CHECK(wanted.size() > 10);
     if (percent == 100) CHECK(wanted.size() == meeting);
+  }
+}
+
+TEST_CASE("strays are listed beside their neighbours; the pairs and their order stay",
+          "[meeting_search]") {
+  Soup m = shaken(samples::torus(60, 30, 2, 0.7), 5, 0.12);
+  m.append(samples::moved(samples::sphere(3), 1.9, 0.2, 0.1));
+  const samples::Rings r = samples::rings_of(m);
+  const plc::SerialExecutor serial;
+  // The corners of each pair, the lowest id in front.
+  const auto corners_of = [](const plc::MeetingSearch& search, const plc::Vector<FacePair>& pairs) {
+    std::vector<uint32_t> corners;
+    for (const auto& [f, g] : pairs) {
+      for (const uint32_t face : {f, g}) {
+        std::array<uint32_t, 3> abc{};
+        std::copy_n(search.face(face), 3, abc.begin());
+        std::rotate(abc.begin(), std::min_element(abc.begin(), abc.end()), abc.end());
+        corners.insert(corners.end(), abc.begin(), abc.end());
+      }
+    }
+    return corners;
+  };
+  for (const unsigned percent : {3U, 30U, 100U}) {
+    const auto marked = random_vertices(r.slots(), 11, 90);
+    const auto strays = random_vertices(r.slots(), 13, percent);
+    plc::MeetingSearch search, plain;
+    const auto find = [&](plc::MeetingSearch& by, const uint8_t* apart) {
+      return by.find(r.view(), r.slots(), r.positions.data(), marked.data(), serial, nullptr,
+                     nullptr, apart);
+    };
+    const auto pairs = find(search, strays.data());
+    CHECK(pairs.size() > 100);
+    CHECK(corners_of(search, pairs) == corners_of(plain, find(plain, nullptr)));
+    const auto changed = [&](plc::MeetingSearch& by) {
+      plc::Vector<uint32_t> all;
+      for (uint32_t v = 0; v < r.slots(); v += 7) all.push_back(v);
+      return corners_of(by, by.find_changed(all.data(), all.size(), serial));
+    };
+    CHECK(changed(search) == changed(plain));
+    // What is no stray and marked is listed where its id says.
+    uint32_t last = 0;
+    for (uint32_t f = 0; f < search.face_count(); ++f) {
+      const uint32_t v = search.face(f)[0];
+      if (strays[v] != 0) continue;
+      CHECK(v >= last);
+      last = v;
+    }
+    CHECK(find(search, plc::Vector<uint8_t>(r.slots(), 0).data()) == find(plain, nullptr));
   }
 }
 
