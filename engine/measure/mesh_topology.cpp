@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "engine/base/blocks.h"
+#include "engine/base/disjoint_sets.h"
 #include "engine/measure/vertex_corners.h"
 #include "pyramid/memory.h"
 
@@ -13,33 +14,15 @@ namespace {
 
 constexpr size_t kVertexBlock = 4096;
 
-// Disjoint sets; the smallest member stands for the set.
-class Sets {
- public:
-  explicit Sets(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  uint32_t find(uint32_t a) {
-    while (parent_[a] != a) a = parent_[a] = parent_[parent_[a]];
-    return a;
-  }
-  void join(uint32_t a, uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  Vector<uint32_t> parent_;
-};
-
 // Joins the corners of the two faces of an edge at each of its ends.
-void join_umbrellas(const uint32_t* abc, uint32_t c, uint32_t d, Sets& corners) {
+void join_umbrellas(const uint32_t* abc, uint32_t c, uint32_t d, DisjointSets& corners) {
   const uint32_t c_end = next_corner(c), d_end = next_corner(d);
   const bool opposite = abc[c] != abc[d];
   corners.join(c, opposite ? d_end : d);
   corners.join(c_end, opposite ? d : d_end);
 }
 
-void number_components(size_t face_count, Sets& faces, MeshTopology& m) {
+void number_components(size_t face_count, DisjointSets& faces, MeshTopology& m) {
   m.component.resize(face_count);
   for (size_t f = 0; f < face_count; ++f) {
     const uint32_t root = faces.find(static_cast<uint32_t>(f));
@@ -53,8 +36,8 @@ void number_components(size_t face_count, Sets& faces, MeshTopology& m) {
   }
 }
 
-void count_vertices(const uint32_t* abc, size_t face_count, size_t vertex_count, Sets& corners,
-                    MeshTopology& m) {
+void count_vertices(const uint32_t* abc, size_t face_count, size_t vertex_count,
+                    DisjointSets& corners, MeshTopology& m) {
   constexpr uint8_t kUsed = 1, kSeen = 2, kSeveral = 4;
   Vector<uint8_t> state(vertex_count, 0);
   for (size_t f = 0; f < face_count; ++f) {
@@ -125,7 +108,7 @@ EdgeTable::EdgeTable(const uint32_t* abc, size_t face_count, size_t vertex_count
 MeshTopology mesh_topology(const uint32_t* abc, size_t face_count, size_t vertex_count,
                            const EdgeTable& edges) {
   MeshTopology m;
-  Sets faces(face_count), corners(3 * face_count);
+  DisjointSets faces(face_count), corners(3 * face_count);
   Vector<uint32_t> valence(vertex_count, 0);
   edges.visit(0, vertex_count,
               [&](uint32_t low, uint32_t high, const EdgeUse* use, const EdgeUse* end) {

@@ -215,18 +215,26 @@ void finish(Mesh& mesh, uint32_t old_slots, const Executor& executor, bool renum
 
 }  // namespace
 
-Vector<uint32_t> morton_order(const Mesh& mesh, const Executor& executor) {
+Vector<uint32_t> morton_order(const Vector<Vec3>& points, double cell, const Executor& executor) {
   constexpr size_t kBlock = 4096;
-  const Vector<uint32_t> living = living_order(mesh);
-  Vector<Keyed> keyed(living.size());
-  run_blocks(executor, living.size(), kBlock, [&](size_t, size_t begin, size_t end) {
+  Vector<Keyed> keyed(points.size());
+  run_blocks(executor, points.size(), kBlock, [&](size_t, size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      keyed[i] = {morton_key(mesh.at(living[i]), mesh.delta), living[i]};
+      keyed[i] = {morton_key(points[i], cell), static_cast<uint32_t>(i)};
     }
   });
   sort_by_key(keyed);
-  Vector<uint32_t> order(living.size());
+  Vector<uint32_t> order(points.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = keyed[i].id;
+  return order;
+}
+
+Vector<uint32_t> morton_order(const Mesh& mesh, const Executor& executor) {
+  const Vector<uint32_t> living = living_order(mesh);
+  Vector<Vec3> points(living.size());
+  for (size_t i = 0; i < living.size(); ++i) points[i] = mesh.at(living[i]);
+  Vector<uint32_t> order = morton_order(points, mesh.delta, executor);
+  for (uint32_t& v : order) v = living[v];
   return order;
 }
 

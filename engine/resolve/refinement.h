@@ -25,7 +25,9 @@ int refinements_between(double from, double to);
 
 // The living vertices along a Morton curve of cells of delta, ties by id.
 Vector<uint32_t> morton_order(const Mesh& mesh, const Executor& executor = SerialExecutor());
-// ... in the order of their ids.
+// The indices of points along such a curve of cells of `cell`.
+Vector<uint32_t> morton_order(const Vector<Vec3>& points, double cell, const Executor& executor);
+// The living vertices in the order of their ids.
 Vector<uint32_t> living_order(const Mesh& mesh);
 
 }  // namespace plc

@@ -5,10 +5,13 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "engine/base/blocks.h"
+#include "engine/base/disjoint_sets.h"
 #include "engine/mesh/face_rings.h"
 #include "kernels/image_value.h"
 #include "pyramid/memory.h"
@@ -188,9 +191,30 @@ class Builder {
     return {};
   }
 
+  // voxel: as iso_surface() has it; NULL: not asked for.
   void build(Mesh& mesh, Vector<uint64_t>* voxel) {
     voxel_ = voxel;
     if (voxel_ != nullptr) voxel_->resize(vertex_count());
+    march_all();
+    const Vector<uint32_t> abc = faces();
+    const FaceRings rings(abc.data(), abc.size() / 3, vertex_count(), executor_);
+    fill_from_rings(mesh, xyz_.data(), vertex_count(), rings);
+  }
+
+  // As iso_crossings() has it.
+  Crossings crossings(int64_t least) {
+    if (least > 0) points_.resize(vertex_count(), 0);
+    march_all();
+    if (least > 0) leave_out(least);
+    Crossings all{std::move(xyz_), faces()};
+    if (least > 0) close_gaps(all);
+    return all;
+  }
+
+ private:
+  size_t vertex_count() const { return first_id_[layers_]; }
+
+  void march_all() {
     xyz_.resize(3 * vertex_count());
     faces_.resize(block_count(layers_, kLayers));
     for_layers([&](size_t block, size_t begin, size_t end) {
@@ -208,19 +232,34 @@ class Builder {
         upper.inside.swap(above);
       }
     });
+  }
+
+  // Of all blocks; those are given away.
+  Vector<uint32_t> faces() {
     Vector<uint32_t> abc;
     size_t count = 0;
     for (const auto& part : faces_) count += part.size();
     abc.reserve(3 * count);
-    for (const auto& part : faces_) {
+    for (auto& part : faces_) {
       for (const Face& f : part) abc.insert(abc.end(), f.begin(), f.end());
+      part = {};
     }
-    const FaceRings rings(abc.data(), count, vertex_count(), executor_);
-    fill_from_rings(mesh, xyz_.data(), vertex_count(), rings);
+    return abc;
   }
 
- private:
-  size_t vertex_count() const { return first_id_[layers_]; }
+  // Leaves vertices without a face out; the others keep their order.
+  static void close_gaps(Crossings& all) {
+    Vector<uint32_t> id(all.xyz.size() / 3, 0);
+    for (const uint32_t v : all.abc) id[v] = 1;
+    uint32_t used = 0;
+    for (size_t v = 0; v < id.size(); ++v) {
+      if (id[v] == 0) continue;
+      for (size_t a = 0; a < 3; ++a) all.xyz[3 * size_t{used} + a] = all.xyz[3 * v + a];
+      id[v] = used++;
+    }
+    all.xyz.resize(3 * size_t{used});
+    for (uint32_t& v : all.abc) v = id[v];
+  }
 
   // body(block, begin, end) over layers of cells; layer z lies between the slices z and z + 1.
   template <typename Body>
@@ -250,6 +289,9 @@ class Builder {
         const auto d = static_cast<size_t>(std::countr_zero(crossed)) + 1;
         const Vec3 p = lattice_.crossing(x, y, z, d);
         xyz_[3 * id] = p.x, xyz_[3 * id + 1] = p.y, xyz_[3 * id + 2] = p.z;
+        if (d == 1 && !points_.empty()) {
+          points_[id] = static_cast<int32_t>(here ? x + 1 : -(x + 1));
+        }
         if (voxel_ == nullptr) continue;
         const size_t in_slice =
             here ? lattice_.point(x, y) : lattice_.point(x + (d & 1), y + (d >> 1 & 1));
@@ -304,12 +346,35 @@ class Builder {
     }
   }
 
+  // Faces of components that enclose fewer than `least` points, but for those that enclose most.
+  void leave_out(int64_t least) {
+    DisjointSets sets(vertex_count());
+    for (const auto& part : faces_) {
+      for (const Face& f : part) {
+        sets.join(f[0], f[1]);
+        sets.join(f[0], f[2]);
+      }
+    }
+    Vector<int64_t> enclosed(vertex_count(), 0);  // by what stands for the component
+    for (uint32_t v = 0; v < vertex_count(); ++v) enclosed[sets.find(v)] += points_[v];
+    // Of a cavity it is negative.
+    for (int64_t& points : enclosed) points = std::abs(points);
+    least = std::min(least, *std::max_element(enclosed.begin(), enclosed.end()));
+    for (auto& part : faces_) {
+      const auto is_small = [&](const Face& f) { return enclosed[sets.find(f[0])] < least; };
+      part.erase(std::remove_if(part.begin(), part.end(), is_small), part.end());
+    }
+  }
+
   Lattice lattice_;
   const Executor& executor_;
   size_t layers_;
   Vector<size_t> first_id_;  // per slice
   Vector<float> xyz_;
   Vector<uint64_t>* voxel_ = nullptr;
+  // Of vertices on edges along x: the points up to there in its row, less where the surface enters
+  // the object. The sum over a component is how many points it encloses. Empty: not asked for.
+  Vector<int32_t> points_;
   Vector<Vector<Face>> faces_;
 };
 
@@ -320,6 +385,14 @@ Status iso_surface(const ImageObject& object, const LatticeValues& values, const
   Builder builder(object, values, executor);
   if (Status s = builder.count(); !s.ok()) return s;
   builder.build(mesh, voxel);
+  return {};
+}
+
+Status iso_crossings(const ImageObject& object, const LatticeValues& values, int64_t least,
+                     const Executor& executor, Crossings& crossings) {
+  Builder builder(object, values, executor);
+  if (Status s = builder.count(); !s.ok()) return s;
+  crossings = builder.crossings(least);
   return {};
 }
 

@@ -49,4 +49,15 @@ LatticeValues values_of(const ImageObject& object);
 Status iso_surface(const ImageObject& object, const LatticeValues& values, const Executor& executor,
                    Mesh& mesh, Vector<uint64_t>* voxel = nullptr);
 
+// That surface, without what makes it a mesh of the engine's.
+struct Crossings {
+  Vector<float> xyz;     // three per vertex, in mesh space
+  Vector<uint32_t> abc;  // three per face
+};
+
+// Components that enclose fewer than `least` voxels - parts of the object with all that is in them,
+// and cavities - are left out, but for those that enclose most.
+Status iso_crossings(const ImageObject& object, const LatticeValues& values, int64_t least,
+                     const Executor& executor, Crossings& crossings);
+
 }  // namespace plc

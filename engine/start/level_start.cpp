@@ -222,7 +222,7 @@ Status make_mesh(const StartSpec& spec, const LevelImage& level, const Executor&
 // Every so many voxels of an image that is finer than delta on some axis (level_delta): a surface
 // that follows all of them is so crowded that conform() takes minutes.
 Status coarse_iso_surface(const ImageObject& object, const std::array<int32_t, 3>& stride,
-                          const Schedule& schedule, Mesh& mesh) {
+                          const Schedule& schedule, int64_t least, Mesh& mesh) {
   const ImageView& view = object.image;
   ImageView coarse = view;
   for (size_t a = 0; a < 3; ++a) {
@@ -238,19 +238,21 @@ Status coarse_iso_surface(const ImageObject& object, const std::array<int32_t, 3
   const auto sides = [&](int32_t y, int32_t z, uint8_t* inside) {
     for (int32_t x = 0; x < coarse.dims[0]; ++x) inside[x] = object.has(at(x, y, z));
   };
-  return regular_iso_surface({coarse, object.iso, object.above}, {sides, at}, schedule, mesh);
+  return regular_iso_surface({coarse, object.iso, object.above}, {sides, at}, schedule, mesh,
+                             least);
 }
 
 // An image without the object is no error: the next finer level may show it.
-Status make_iso(const ImageObject& object, double delta, const Schedule& schedule, Mesh& mesh) {
+Status make_iso(const ImageObject& object, double delta, const Schedule& schedule, int64_t least,
+                Mesh& mesh) {
   std::array<int32_t, 3> stride{};
   for (size_t a = 0; a < 3; ++a) {
     stride[a] =
         std::max(1, static_cast<int32_t>(delta * static_cast<double>(object.image.scale[a])));
   }
   Status s = stride == std::array<int32_t, 3>{1, 1, 1}
-                 ? regular_iso_surface(object, values_of(object), schedule, mesh)
-                 : coarse_iso_surface(object, stride, schedule, mesh);
+                 ? regular_iso_surface(object, values_of(object), schedule, mesh, least)
+                 : coarse_iso_surface(object, stride, schedule, least, mesh);
   return s.code() == ErrorCode::kInvalidData ? Status() : s;
 }
 
@@ -273,9 +275,9 @@ Status make_start(const StartSpec& spec, const LevelImage& level, double delta,
     case Init::kIso:
       assert(level.iso);
       return make_iso({view_of(level, level.pyramid), *level.iso, level.inside_above}, delta,
-                      schedule, mesh);
+                      schedule, mesh.sizing == nullptr ? 0 : kPlaceVoxels, mesh);
     case Init::kMask:
-      return make_iso({view_of(level, spec.mask), 0.5F, true}, delta, schedule, mesh);
+      return make_iso({view_of(level, spec.mask), 0.5F, true}, delta, schedule, 0, mesh);
     case Init::kMesh:
       return make_mesh(spec, level, schedule, mesh);
   }

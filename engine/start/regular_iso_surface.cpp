@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/mesh_arrays.h"
 #include "engine/guard/self_meeting.h"
 #include "engine/resolve/refinement.h"
 #include "engine/start/thinning.h"
@@ -142,10 +143,11 @@ bool set_apart(const Mesh& mesh, const Schedule& schedule, const Vector<uint64_t
 }  // namespace
 
 Status regular_iso_surface(const ImageObject& object, const LatticeValues& values,
-                           const Schedule& schedule, Mesh& mesh) {
+                           const Schedule& schedule, Mesh& mesh, int64_t least) {
   if (mesh.sizing != nullptr) {
-    if (Status s = iso_surface(object, values, schedule, mesh); !s.ok()) return s;
-    thin_out(mesh, schedule);
+    Crossings crossings;
+    if (Status s = iso_crossings(object, values, least, schedule, crossings); !s.ok()) return s;
+    thin_out(arrays_of(crossings.xyz, crossings.abc), schedule, mesh);
     return {};
   }
   Vector<uint64_t> voxel;

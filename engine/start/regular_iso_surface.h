@@ -16,6 +16,6 @@ namespace plc {
 
 // As iso_surface(); embedded, with other vertices, and without gaps in the ids.
 Status regular_iso_surface(const ImageObject& object, const LatticeValues& values,
-                           const Schedule& schedule, Mesh& mesh);
+                           const Schedule& schedule, Mesh& mesh, int64_t least = 0);
 
 }  // namespace plc

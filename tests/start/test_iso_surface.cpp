@@ -1,8 +1,11 @@
 #include "engine/start/iso_surface.h"
 
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "engine/base/mesh_arrays.h"
 #include "engine/base/schedule.h"
@@ -204,4 +207,44 @@ TEST_CASE("iso-surfaces are the same bits for any number of threads", "[iso_surf
   }
   CHECK(hashes[0] == hashes[1]);
   CHECK(hashes[0] == hashes[2]);
+}
+
+TEST_CASE("parts and cavities of too few voxels are left out, but for the largest",
+          "[iso_surface]") {
+  // A shell of 5 x 5 x 5 voxels around a cavity of 3 x 3 x 3, that with a voxel in its middle; a
+  // row of 26 voxels, a row of 27, one of 27 at the border.
+  Volume v = constant({40, 16, 16}, 0);
+  const auto fill = [&](std::array<size_t, 3> low, std::array<size_t, 3> size, float value) {
+    for (size_t z = low[2]; z < low[2] + size[2]; ++z) {
+      for (size_t y = low[1]; y < low[1] + size[1]; ++y) {
+        std::fill_n(v.values.begin() + static_cast<int64_t>((z * 16 + y) * 40 + low[0]), size[0],
+                    value);
+      }
+    }
+  };
+  fill({2, 2, 2}, {5, 5, 5}, 1);
+  fill({3, 3, 3}, {3, 3, 3}, 0);
+  fill({4, 4, 4}, {1, 1, 1}, 1);
+  fill({2, 10, 10}, {26, 1, 1}, 1);
+  fill({2, 13, 13}, {27, 1, 1}, 1);
+  fill({13, 0, 0}, {27, 1, 1}, 1);
+  const plc::ImageView view = view_of(v);
+  const plc::ImageObject object{view, 0.5F, true};
+  const auto components = [&](int64_t least) {
+    plc::Crossings crossings;
+    REQUIRE(plc::iso_crossings(object, plc::values_of(object), least, samples::kSerial, crossings)
+                .ok());
+    const std::vector<double> xyz(crossings.xyz.begin(), crossings.xyz.end());
+    plc::MeshCheck check;
+    REQUIRE(plc::check_mesh(plc::arrays_of(xyz, crossings.abc), samples::kSerial, check).ok());
+    CHECK(check.valid == 1);
+    CHECK(check.isolated_vertices == 0);
+    return check.measures.components;
+  };
+  CHECK(components(0) == 6);
+  CHECK(components(2) == 5);   // without the voxel in the cavity
+  CHECK(components(27) == 4);  // and the row of 26
+  CHECK(components(28) == 1);  // the shell, filled
+  CHECK(components(125) == 1);
+  CHECK(components(1000) == 1);
 }
