@@ -67,6 +67,12 @@ Status Recovery::step() {
       return start_level();
     case Phase::kIterate:
       return iterate();
+    case Phase::kSearch: {
+      phase_ = Phase::kIterate;
+      round_.searched = true;
+      bool added = false;
+      return search(added);
+    }
     case Phase::kCheck:
       check();
       return {};
@@ -282,17 +288,24 @@ Status Recovery::verify() {
   return report_progress();
 }
 
+// Whether missed places are still to be searched for in this round. On a coarse level they are not:
+// what it has missed is searched for when the next finer one starts.
+bool Recovery::searched_again() const {
+  return level_ == 0 && !round_.searched && round_.number < kLateRounds &&
+         late_iterations_ < spec_.max_iterations;
+}
+
+// Where something was added, another round begins.
+Status Recovery::search(bool& added) {
+  Status s = add_late_bubbles(added);
+  if (s.ok() && added) start_round(round_.number + 1, true);
+  return s;
+}
+
 Status Recovery::end_round() {
-  // On a coarse level nothing is searched for: what it has missed is searched for when the next
-  // finer one starts.
-  const bool again = round_.number < kLateRounds && late_iterations_ < spec_.max_iterations;
-  if (level_ == 0 && again) {
+  if (searched_again()) {
     bool added = false;
-    if (Status s = add_late_bubbles(added); !s.ok()) return s;
-    if (added) {
-      start_round(round_.number + 1, true);
-      return {};
-    }
+    if (Status s = search(added); !s.ok() || added) return s;
   }
   if (mesh_.vertex_count() == 0) return leave_level();
   if (!mesh_.in_order()) {  // repairs have made or deleted vertices
@@ -353,6 +366,10 @@ bool Recovery::confirmed(int calm) {
   }
   if (!evolution_.any_asleep()) return iteration >= kMinIterations;
   if (iteration < std::max(c.not_before, kMinIterations - kConfirmIterations)) return false;
+  if (mesh_.sizing != nullptr && searched_again()) {
+    phase_ = Phase::kSearch;
+    return false;
+  }
   evolution_.wake_all();
   c.since = iteration;
   return false;

@@ -133,9 +133,10 @@ class Recovery {
   Status restore(StateReader& from);
 
  private:
-  enum class Phase : uint8_t { kStart, kIterate, kCheck, kVerify, kRoundEnd, kVerdict };
+  enum class Phase : uint8_t { kStart, kIterate, kSearch, kCheck, kVerify, kRoundEnd, kVerdict };
   // Vertices that sleep do not move, whether they are at rest or not. So all are woken before a
-  // level ends, and it has converged when they stay calm.
+  // level ends, and it has converged when they stay calm. An adaptive mesh is searched for what it
+  // has missed before that: what gets late bubbles goes on anyway.
   struct Confirmation {
     int since = 0;       // iteration in which all were woken; 0: they were not
     int not_before = 0;  // iteration in which they may be woken again
@@ -145,6 +146,7 @@ class Recovery {
   struct Round {
     int number = 0;
     bool late = false;
+    bool searched = false;  // for missed places, before it was confirmed
     int iteration = 0;
     int calm = 0;  // iterations in a row
     Confirmation confirmation;
@@ -170,6 +172,8 @@ class Recovery {
   void count_frozen();
   void check();
   Status verify();
+  bool searched_again() const;
+  Status search(bool& added);
   Status end_round();
   Status ask_verdict();
   Status leave_level();
