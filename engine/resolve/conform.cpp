@@ -138,10 +138,13 @@ Status divide_faces(Mesh& mesh, const Schedule& schedule, OperationCounts& count
   }
 }
 
+// Edges where the size is below delta count for as much longer as they are to be shorter.
 double longest_edge(const Mesh& mesh) {
   float longest = 0;
-  visit_edges(mesh,
-              [&](uint32_t, uint32_t, float squared) { longest = std::max(longest, squared); });
+  visit_edges(mesh, [&](uint32_t u, uint32_t v, float squared) {
+    const float size = mesh.size_between(u, v) / static_cast<float>(mesh.delta);
+    longest = std::max(longest, size < 1 ? squared / (size * size) : squared);
+  });
   return std::sqrt(static_cast<double>(longest));
 }
 

@@ -14,7 +14,8 @@
 
 namespace plc {
 
-// As iso_surface(); embedded, with other vertices, and without gaps in the ids.
+// As iso_surface(); embedded, with other vertices, and without gaps in the ids. least: in an
+// adaptive mesh as iso_crossings() has it, in others 0.
 Status regular_iso_surface(const ImageObject& object, const LatticeValues& values,
                            const Schedule& schedule, Mesh& mesh, int64_t least = 0);
 

@@ -83,6 +83,29 @@ TEST_CASE("late bubbles find the part and the cavity that the surface has passed
   }
 }
 
+TEST_CASE("what an adaptive mesh has missed is searched for before all of it is woken and checked",
+          "[recovery]") {
+  for (const bool adaptive : {false, true}) {
+    Run run = hidden_run(0);
+    run.recovery.start.init = plc::Init::kSeeds;
+    run.recovery.start.seeds = {{{29.5, 13.5, 13.5}, {12.5, 12.5, 12.5}}};
+    if (adaptive) run.recovery.sizes.emplace();
+    int searches = 0, checks = 0;
+    plc::RecoveryHooks hooks;
+    hooks.pass = [&](const std::string& pass, uint32_t, const plc::Evolution&) {
+      searches += pass == "late bubbles" ? 1 : 0;
+      checks += pass == "check of all" ? 1 : 0;
+    };
+    const Recovered r = recover(run, hooks);
+    REQUIRE(r.status.ok());
+    CHECK(r.records[0].converged);
+    CHECK(r.records[0].late.bubbles == 1);
+    CHECK(searches == 2);
+    // In adaptive meshes at the start, too.
+    CHECK(checks == 2);
+  }
+}
+
 TEST_CASE("all rounds after late bubbles together take no more iterations than the one before them",
           "[recovery]") {
   // A sphere that springs draw together over a large ball: one ball is far outside, and found

@@ -191,6 +191,31 @@ TEST_CASE("a thin cavity gets a whole wall in an adaptive mesh", "[late_bubbles]
   CHECK(high == Approx(34).margin(0.5));
 }
 
+TEST_CASE("late bubbles of an adaptive mesh start with its edges, whatever delta is",
+          "[late_bubbles]") {
+  const BallScene scene({kMain, {34, 12, 12, 8}});
+  const plc::ImageObject object{scene.view(), kIso, true};
+  const plc::Schedule schedule(1);
+  for (const double delta : {kDelta / 1.5, 1.5 * kDelta}) {
+    plc::Sizing sizing;
+    sizing.object = object;
+    REQUIRE(sizing.field.build(scene.view(), kIso, delta, {}, schedule).ok());
+    Mesh mesh;
+    mesh.sizing = &sizing;
+    samples::fill_mesh(mesh, samples::moved(samples::sphere(3), 10, 12, 12, 7), delta);
+    const uint32_t old = mesh.slots();
+    VoxelSet tried;
+    const plc::MissedPlaces places =
+        plc::find_late_places(mesh, object, schedule, tried, plc::whole_room(scene.view()));
+    LateBubbles started;
+    plc::OperationCounts counts;
+    REQUIRE(plc::start_late_bubbles(object, places, schedule, mesh, started, counts).ok());
+    CHECK(started.bubbles == 1);
+    CAPTURE(delta, mesh.slots() - old);
+    CHECK(counts.transformations() * 2 < mesh.slots() - old);
+  }
+}
+
 TEST_CASE("parts and cavities are started together and counted each", "[late_bubbles]") {
   const BallScene scene({{12, 12, 12, 10}, {12, 12, 12, -4}, {31, 7, 12, 4}, {31, 18, 12, 3.5}});
   Mesh mesh;
