@@ -107,8 +107,9 @@ Status start_late_bubbles(const ImageObject& object, const MissedPlaces& places,
     if (count == 0) continue;
     const Cutout cutout(object, places, kind);
     Mesh part;
-    part.delta = mesh.delta;
     part.sizing = mesh.sizing;
+    // A uniform one is made by voxels, and conform() learns delta: its bits are recorded.
+    if (part.sizing != nullptr) part.delta = mesh.delta;
     part.inside_out = kind == Missed::kCavity;
     if (Status s = regular_iso_surface(cutout.object(), cutout.values(), schedule, part); !s.ok()) {
       return s;
