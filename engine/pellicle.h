@@ -281,9 +281,10 @@ typedef enum plc_init PLC_INT {
   PLC_INIT_BUBBLE = 0,  /* one bubble around the object; around the image where iso is NAN */
   PLC_INIT_BUBBLES = 1, /* bubbles[0] x bubbles[1] x bubbles[2] bubbles over the image */
   PLC_INIT_SEEDS = 2,   /* the spheres of plc_extras */
-  PLC_INIT_ISO = 3,  /* the iso-surface of the coarsest image, closed at the border (figure 23) */
-  PLC_INIT_MASK = 4, /* the surface of the mask of plc_extras, reduced like the image */
-  PLC_INIT_MESH = 5  /* the mesh of plc_extras, brought to satisfy (1)-(3) */
+  PLC_INIT_ISO = 3,     /* the iso-surface of the coarsest image, closed at the border (figure 23);
+                           of an adaptive mesh without parts and cavities of fewer than 27 voxels */
+  PLC_INIT_MASK = 4,    /* the surface of the mask of plc_extras, reduced like the image */
+  PLC_INIT_MESH = 5     /* the mesh of plc_extras, brought to satisfy (1)-(3) */
 } plc_init;
 
 /* Which forces of the image act (3.8). */
