@@ -86,9 +86,10 @@ void MeetingSearch::sort_vertices(uint32_t slots) {
 
 uint64_t MeetingSearch::where_listed(const Mesh& mesh, uint32_t v) {
   if (!mesh.stray(v)) return uint64_t{v} << 32;
-  // Behind the first neighbour that is none, or the first neighbour of a neighbour.
+  // Behind the neighbour of the lowest id that is no stray, or that of a neighbour.
+  constexpr uint32_t kNone = ~0U;
   const auto neighbor = [&](uint32_t w) {
-    uint32_t first = plc::Mesh::kAbsent;
+    uint32_t first = kNone;
     for (uint32_t k = 0; k < mesh.rings.valence[w]; ++k) {
       const uint32_t x = mesh.rings.slot(w, k);
       if (!mesh.stray(x)) first = std::min(first, x);
@@ -96,10 +97,10 @@ uint64_t MeetingSearch::where_listed(const Mesh& mesh, uint32_t v) {
     return first;
   };
   uint32_t behind = neighbor(v);
-  for (uint32_t k = 0; k < mesh.rings.valence[v] && behind == plc::Mesh::kAbsent; ++k) {
+  for (uint32_t k = 0; k < mesh.rings.valence[v] && behind == kNone; ++k) {
     behind = neighbor(mesh.rings.slot(v, k));
   }
-  if (behind == plc::Mesh::kAbsent) behind = v;
+  if (behind == kNone) behind = v;
   return uint64_t{behind} << 32 | (uint64_t{v} + 1);
 }
 

@@ -20,9 +20,8 @@ namespace plc {
 // face that has moved is tested against those.
 //
 //   risk           1      flags         of risk.h; attached to the mesh
-//   strays         1      id            whether it was created since restart(); attached, too. It
-//   is
-//                                       not saved: results do not depend on it
+//   strays         1      id            whether created since restart(); attached, too, but not
+//                                       saved: results do not depend on it
 class MotionGuard {
  public:
   MotionGuard(Mesh& mesh, const Executor& executor)

@@ -7,11 +7,10 @@
 
 namespace plc {
 
-Vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Executor& executor,
-                                              const uint8_t* marked) {
+Vector<std::array<uint32_t, 3>> meeting_faces(const Mesh& mesh, const Executor& executor) {
   MeetingSearch search;
   Vector<uint32_t> faces;
-  for (const auto& [f, g] : search.find(mesh.rings(), mesh.slots(), mesh.position.data(), marked,
+  for (const auto& [f, g] : search.find(mesh.rings(), mesh.slots(), mesh.position.data(), nullptr,
                                         executor, nullptr, mesh.held_ids())) {
     faces.push_back(f);
     faces.push_back(g);

@@ -52,11 +52,11 @@ class Grid {
     const auto along = [&](size_t a, float x) {
       return static_cast<uint32_t>((x - low[a]) / side);
     };
-    for (size_t a = 0; a < 3; ++a) dims_[a] = along(a, high[a]) + 1;
-    begin_.assign(size_t{dims_[0]} * dims_[1] * dims_[2] + 1, 0);
+    const uint32_t columns = along(0, high[0]) + 1, rows = along(1, high[1]) + 1;
+    begin_.assign(size_t{columns} * rows * (along(2, high[2]) + 1) + 1, 0);
     for (size_t v = 0; v < places.size(); ++v) {
       const Vec3 p = places[v].at;
-      block_[v] = (along(2, p.z) * dims_[1] + along(1, p.y)) * dims_[0] + along(0, p.x);
+      block_[v] = (along(2, p.z) * rows + along(1, p.y)) * columns + along(0, p.x);
       ++begin_[block_[v] + size_t{1}];
     }
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
@@ -68,23 +68,8 @@ class Grid {
   std::span<const uint32_t> vertices(size_t block) const {
     return {ids_.data() + begin_[block], ids_.data() + begin_[block + 1]};
   }
-  // Marks the blocks that touch those that are marked, too.
-  Vector<uint8_t> with_neighbors(Vector<uint8_t> marked) const {
-    size_t step = 1;
-    for (const uint32_t dim : dims_) {
-      const Vector<uint8_t> before = marked;
-      for (size_t block = 0; block < blocks(); ++block) {
-        const size_t at = block / step % dim;
-        if (at > 0) marked[block] |= before[block - step];
-        if (at + 1 < dim) marked[block] |= before[block + step];
-      }
-      step *= dim;
-    }
-    return marked;
-  }
 
  private:
-  std::array<uint32_t, 3> dims_{1, 1, 1};
   Vector<uint32_t> block_;  // of each vertex
   Vector<size_t> begin_;    // of each block, in ids_
   Vector<uint32_t> ids_;    // ascending in each block
@@ -279,11 +264,7 @@ void thin_out_blocks(const MeshArraysOf<float>& surface, const Vector<Place>& pl
   for (int i = 0;; ++i) {
     thinning.run(marked);
     fill(mesh, thinning.mesh(), places, schedule, ids);
-    // What has not changed since it was looked at does not meet.
-    const Vector<uint8_t> near = grid.with_neighbors(marked);
-    Vector<uint8_t> looked_at(ids.size());
-    for (size_t v = 0; v < ids.size(); ++v) looked_at[v] = near[grid.block(ids[v])];
-    const auto meeting = meeting_faces(mesh, schedule, looked_at.data());
+    const auto meeting = meeting_faces(mesh, schedule);
     if (meeting.empty()) break;
     // One of two faces that meet is not what it was: of what was merged into its corners something
     // took part in a step, and does so no more. So this ends.
