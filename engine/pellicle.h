@@ -670,7 +670,7 @@ PLC_API plc_status plc_surface_positions(plc_context* context, const plc_surface
                                          plc_space space, float* xyz, int64_t capacity);
 /* As plc_surface_positions, in doubles: the engine's mesh, mapped to the space with no rounding to
  * floats in it, which makes faces meet where the surface lies millions of voxels away from the
- * space's origin, and rarely where parts of it all but touch. */
+ * space's origin, and rarely where parts of it all but touch; plc_mesh_round mends the latter. */
 PLC_API plc_status plc_surface_positions_f64(plc_context* context, const plc_surface* surface,
                                              plc_space space, double* xyz, int64_t capacity);
 /* Where the surface went round in circles and was frozen, so that its level could end: connected
@@ -948,6 +948,17 @@ PLC_API plc_status plc_mesh_simplify(plc_context* context, const double* xyz, in
                                      const uint32_t* abc, int64_t face_count,
                                      const plc_simplify_options* options, double* new_xyz,
                                      uint32_t* new_abc, plc_simplified* simplified);
+
+/* Rounds a valid mesh to floats that are one, too, for programs and file formats that have no
+ * doubles. Where surfaces all but touch, rounding alone makes faces meet: their corners are moved
+ * apart, by a few times what floats are rounded by there and by a 64th of their shortest edge at
+ * most for each pair of such faces, in each of a few turns. rounded: room for 3 * vertex_count
+ * floats. moved: of how many vertices it is not what rounding alone gives; may be NULL.
+ * PLC_INVALID_DATA where the mesh is not valid, or floats do not hold it: it is too small beside
+ * its distance from the origin. Nothing is written then. */
+PLC_API plc_status plc_mesh_round(plc_context* context, const double* xyz, int64_t vertex_count,
+                                  const uint32_t* abc, int64_t face_count, float* rounded,
+                                  int64_t* moved);
 
 #ifdef __cplusplus
 }

@@ -512,4 +512,12 @@ inline Simplified simplify(const Context& context, const Mesh& mesh,
   return s;
 }
 
+// See plc_mesh_round.
+inline std::vector<float> round(const Context& context, const Mesh& mesh) {
+  std::vector<float> rounded(mesh.xyz.size());
+  context.demand(plc_mesh_round(context.get(), mesh.xyz.data(), mesh.vertices(), mesh.abc.data(),
+                                mesh.faces(), rounded.data(), nullptr));
+  return rounded;
+}
+
 }  // namespace pellicle

@@ -1,4 +1,4 @@
-// The C API: simplifying of any mesh.
+// The C API: simplifying and rounding of any mesh.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -6,6 +6,8 @@
 #include "engine/api/handles.h"
 #include "engine/measure/hausdorff.h"
 #include "engine/measure/mesh_check.h"
+#include "engine/measure/mesh_input.h"
+#include "engine/simplify/mesh_rounding.h"
 #include "engine/simplify/simplification.h"
 #include "pyramid/check_volume.h"
 
@@ -15,40 +17,6 @@ namespace {
 constexpr double kLeastTolerance = 100;
 // How small distances are told, against the tolerance.
 constexpr double kPrecise = 8;
-
-std::string count_of(int64_t count, const char* one, const char* many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
-// What is wrong with a mesh that is not valid, the gravest thing alone.
-std::string fault_of(const plc::MeshCheck& c) {
-  if (c.measures.faces == 0) return "it has no face";
-  if (c.closed == 0) return count_of(c.border_edges, "edge has", "edges have") + " one face";
-  if (c.manifold == 0) {
-    return count_of(c.non_manifold_edges, "edge has", "edges have") + " more than two faces, " +
-           count_of(c.non_manifold_vertices, "vertex", "vertices") + " more than one umbrella";
-  }
-  if (c.oriented == 0) {
-    return "the faces of " + count_of(c.inconsistent_edges, "edge", "edges") + " run it one way";
-  }
-  if (c.degenerate_faces > 0) {
-    return count_of(c.degenerate_faces, "face has", "faces have") + " no area";
-  }
-  if (c.self_intersections > 0) {
-    return count_of(c.self_intersections, "pair", "pairs") + " of faces meet, the first " +
-           std::to_string(c.first_intersection[0]) + " and " +
-           std::to_string(c.first_intersection[1]);
-  }
-  return count_of(c.wrongly_oriented_components, "component faces", "components face") +
-         " the wrong way";
-}
-
-plc::Status demand_valid(const plc::MeshArrays& mesh, const plc::Executor& executor) {
-  plc::MeshCheck check;
-  plc::Status status = plc::check_mesh(mesh, executor, check);
-  if (!status.ok() || check.valid != 0) return status;
-  return {plc::ErrorCode::kInvalidData, "the mesh is not a valid surface: " + fault_of(check)};
-}
 
 }  // namespace
 
@@ -72,7 +40,7 @@ plc_status plc_mesh_simplify(plc_context* context, const double* xyz, int64_t ve
     if (status = plc::check_output(simplified, "simplified"); !status.ok()) return status;
     const plc::Executor& executor = context->host->schedule;
     const plc::MeshArrays given = plc::mesh_arrays(xyz, vertex_count, abc, face_count);
-    status = demand_valid(given, executor);
+    status = plc::demand_valid(given, executor);
     if (!status.ok()) return status;
     if (const double least = kLeastTolerance * plc::distance_rounding(given); o.tolerance < least) {
       return plc::bad_argument("options: tolerance " + plc::number_text(o.tolerance) +
@@ -91,7 +59,8 @@ plc_status plc_mesh_simplify(plc_context* context, const double* xyz, int64_t ve
     status = plc::check_mesh(made, executor, check);
     if (!status.ok()) return status;
     if (check.valid == 0) {
-      return {plc::ErrorCode::kInternal, "the simplified mesh is not valid: " + fault_of(check)};
+      return {plc::ErrorCode::kInternal,
+              "the simplified mesh is not valid: " + plc::fault_of(check)};
     }
     const double precise = o.tolerance / kPrecise;
     const plc::FarthestPlace from = plc::farthest_place(made, given, precise, executor);
@@ -110,6 +79,22 @@ plc_status plc_mesh_simplify(plc_context* context, const double* xyz, int64_t ve
                              to.at_least,
                              to.at_most};
     plc::give_struct(out, simplified);
+    return {};
+  });
+}
+
+plc_status plc_mesh_round(plc_context* context, const double* xyz, int64_t vertex_count,
+                          const uint32_t* abc, int64_t face_count, float* rounded, int64_t* moved) {
+  return plc::guarded(context, [&]() -> plc::Status {
+    if (rounded == nullptr) return plc::bad_argument("rounded: must not be NULL");
+    const plc::MeshArrays given = plc::mesh_arrays(xyz, vertex_count, abc, face_count);
+    const plc::Executor& executor = context->host->schedule;
+    if (plc::Status s = plc::check_mesh_input(given, executor); !s.ok()) return s;
+    plc::RoundedMesh made;
+    if (plc::Status s = plc::round_to_floats(given, executor, made); !s.ok()) return s;
+    std::transform(made.xyz.begin(), made.xyz.end(), rounded,
+                   [](double x) { return static_cast<float>(x); });
+    if (moved != nullptr) *moved = made.moved;
     return {};
   });
 }

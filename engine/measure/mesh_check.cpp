@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <string>
 
 #include "engine/base/blocks.h"
 #include "engine/base/mesh_arrays.h"
@@ -154,6 +155,10 @@ void find_intersections(const MeshArrays& mesh, const FaceTree& tree, const Exec
   check.first_intersection[1] = pairs.empty() ? -1 : static_cast<int64_t>(pairs[0].second);
 }
 
+std::string count_of(int64_t count, const char* one, const char* many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
 }  // namespace
 
 Status check_mesh(const MeshArrays& mesh, const Executor& executor, MeshCheck& check) {
@@ -187,6 +192,35 @@ Status check_mesh(const MeshArrays& mesh, const Executor& executor, MeshCheck& c
                 : 0;
   check = c;
   return {};
+}
+
+std::string fault_of(const MeshCheck& c) {
+  if (c.measures.faces == 0) return "it has no face";
+  if (c.closed == 0) return count_of(c.border_edges, "edge has", "edges have") + " one face";
+  if (c.manifold == 0) {
+    return count_of(c.non_manifold_edges, "edge has", "edges have") + " more than two faces, " +
+           count_of(c.non_manifold_vertices, "vertex", "vertices") + " more than one umbrella";
+  }
+  if (c.oriented == 0) {
+    return "the faces of " + count_of(c.inconsistent_edges, "edge", "edges") + " run it one way";
+  }
+  if (c.degenerate_faces > 0) {
+    return count_of(c.degenerate_faces, "face has", "faces have") + " no area";
+  }
+  if (c.self_intersections > 0) {
+    return count_of(c.self_intersections, "pair", "pairs") + " of faces meet, the first " +
+           std::to_string(c.first_intersection[0]) + " and " +
+           std::to_string(c.first_intersection[1]);
+  }
+  return count_of(c.wrongly_oriented_components, "component faces", "components face") +
+         " the wrong way";
+}
+
+Status demand_valid(const MeshArrays& mesh, const Executor& executor) {
+  MeshCheck check;
+  Status status = check_mesh(mesh, executor, check);
+  if (!status.ok() || check.valid != 0) return status;
+  return {ErrorCode::kInvalidData, "the mesh is not a valid surface: " + fault_of(check)};
 }
 
 }  // namespace plc

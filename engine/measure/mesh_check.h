@@ -16,6 +16,7 @@
 // of the latter counts as a component. The volume of a mesh that is not closed means nothing.
 #pragma once
 #include <cstdint>
+#include <string>
 
 #include "engine/base/mesh_arrays.h"
 #include "engine/measure/measures.h"
@@ -43,5 +44,11 @@ struct MeshCheck {
 // Input and errors as check_mesh_input() has them; check is unchanged after an error. The same bits
 // for any executor.
 Status check_mesh(const MeshArrays& mesh, const Executor& executor, MeshCheck& check);
+
+// What is wrong with a mesh that is not valid, the gravest thing alone.
+std::string fault_of(const MeshCheck& check);
+
+// kInvalidData with that, of a mesh that is not valid.
+Status demand_valid(const MeshArrays& mesh, const Executor& executor);
 
 }  // namespace plc

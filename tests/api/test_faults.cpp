@@ -311,6 +311,10 @@ TEST_CASE("measures and checks of a mesh survive every allocation that fails", "
                                  new_xyz.data(), new_abc.data(), &simplified);
       },
       [&] {
+        std::vector<float> rounded(xyz.size());
+        return plc_mesh_round(c, xyz.data(), vertices, abc.data(), faces, rounded.data(), nullptr);
+      },
+      [&] {
         plc_surface* made = nullptr;
         const plc_status status = plc_surface_create(c, PLC_SPACE_LPS, &job.image, xyz.data(),
                                                      vertices, abc.data(), faces, &made);

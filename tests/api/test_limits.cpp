@@ -193,6 +193,9 @@ TEST_CASE("Impossible counts of vertices and faces are refused before they are r
     CAPTURE(count);
     CHECK(plc_check_mesh(host.get(), kXyz, count, kAbc, 1, &check) == PLC_INVALID_ARGUMENT);
     CHECK(plc_check_mesh(host.get(), kXyz, 3, kAbc, count, &check) == PLC_INVALID_ARGUMENT);
+    float rounded[9] = {};
+    CHECK(plc_mesh_round(host.get(), kXyz, count, kAbc, 1, rounded, nullptr) ==
+          PLC_INVALID_ARGUMENT);
     double values[3] = {7, 7, 7};
     CHECK(plc_mesh_geodesic(host.get(), kXyz, count, kAbc, 1, 0, values) == PLC_INVALID_ARGUMENT);
     CHECK(plc_mesh_geodesic(host.get(), kXyz, 3, kAbc, count, 0, values) == PLC_INVALID_ARGUMENT);

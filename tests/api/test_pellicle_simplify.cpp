@@ -1,6 +1,10 @@
-// The C API: simplifying of any mesh.
+// The C API: simplifying and rounding of any mesh.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <functional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/pellicle.h"
@@ -75,6 +79,40 @@ void demand_within(plc_context* context, const Soup& given, const Simplified& s,
   CHECK(s.told.to_at_most <= tolerance);
   CHECK(distance(context, s.mesh, given) <= s.told.from_at_most);
   CHECK(distance(context, given, s.mesh) <= s.told.to_at_most);
+}
+
+struct Rounded {
+  plc_status status = PLC_INTERNAL;
+  Soup mesh;
+  int64_t moved = -1;
+};
+
+Rounded rounded(plc_context* context, const Soup& m) {
+  Rounded r;
+  r.mesh = m;
+  std::vector<float> floats(m.xyz.size(), -7);
+  r.status = plc_mesh_round(context, m.xyz.data(), vertices(m), m.abc.data(), faces(m),
+                            floats.data(), &r.moved);
+  r.mesh.xyz.assign(floats.begin(), floats.end());
+  return r;
+}
+
+double farthest_moved(const Soup& a, const Soup& b) {
+  double most = 0;
+  for (size_t i = 0; i < a.xyz.size(); ++i) most = std::max(most, std::abs(a.xyz[i] - b.xyz[i]));
+  return most;
+}
+
+// Each ends where floats are 8e-6 apart.
+Soup two_shells(double gap) {
+  Soup shell = samples::moved(samples::sphere(3), 100, 90, 110);
+  shell.append(samples::flipped(samples::moved(samples::sphere(3), 100, 90, 110, 1 - gap)));
+  return shell;
+}
+Soup flat_ball(double thickness) {
+  Soup ball = samples::sphere(3);
+  for (size_t i = 2; i < ball.xyz.size(); i += 3) ball.xyz[i] *= thickness;
+  return samples::moved(ball, 100, 90, 110);
 }
 
 }  // namespace
@@ -181,4 +219,51 @@ TEST_CASE("what cannot be simplified is refused in a line", "[pellicle_simplify]
   CHECK(simplified(context.get(), samples::sphere(2), 1e-13).status == PLC_INVALID_ARGUMENT);
   CHECK_THAT(plc_context_message(context.get()), Contains("tolerance 1e-13"));
   CHECK(simplified(context.get(), samples::sphere(2), 1e-9).status == PLC_OK);
+}
+
+TEST_CASE("sheets nearer to each other than floats are rounded by lie apart when rounded",
+          "[pellicle_simplify]") {
+  const Context context = samples::make_context();
+  for (const Soup& m : {two_shells(1e-7), two_shells(3e-9), flat_ball(1e-7), flat_ball(3e-9)}) {
+    REQUIRE(check_of(context.get(), m).valid == 1);
+    const Rounded r = rounded(context.get(), m);
+    REQUIRE(r.status == PLC_OK);
+    CHECK(check_of(context.get(), r.mesh).valid == 1);
+    CHECK(r.moved > 0);
+    CHECK(farthest_moved(m, r.mesh) < 1e-3);
+  }
+}
+
+TEST_CASE("what floats hold is rounded and nothing else", "[pellicle_simplify]") {
+  const Context context = samples::make_context();
+  const Soup m = two_shells(1e-2);
+  const Rounded r = rounded(context.get(), m);
+  REQUIRE(r.status == PLC_OK);
+  CHECK(r.moved == 0);
+  for (size_t i = 0; i < m.xyz.size(); ++i) {
+    REQUIRE(r.mesh.xyz[i] == static_cast<double>(static_cast<float>(m.xyz[i])));
+  }
+}
+
+TEST_CASE("what is not valid, or too small for floats, is not rounded", "[pellicle_simplify]") {
+  const Context context = samples::make_context();
+  Soup open = samples::sphere(2);
+  open.abc.resize(open.abc.size() - 3);
+  Soup met = samples::sphere(2);
+  met.append(samples::moved(samples::sphere(2), 1, 0, 0));
+  const auto message = [&] { return std::string(plc_context_message(context.get())); };
+  for (const auto& [m, told] :
+       {std::pair(open, "3 edges have one face"), std::pair(met, "pairs of faces meet"),
+        std::pair(samples::moved(samples::sphere(2), 1e3, 0, 0, 1e-6),
+                  "rounded to floats, faces of the mesh meet"),
+        std::pair(samples::moved(samples::sphere(2), 0, 0, 0, 1e40),
+                  "rounded to floats, faces of the mesh meet")}) {
+    const Rounded r = rounded(context.get(), m);
+    CHECK(r.status == PLC_INVALID_DATA);
+    CHECK_THAT(message(), Contains(told));
+    CHECK(r.moved == -1);
+    CHECK(r.mesh.xyz[0] == -7);
+  }
+  CHECK(plc_mesh_round(context.get(), met.xyz.data(), vertices(met), met.abc.data(), faces(met),
+                       nullptr, nullptr) == PLC_INVALID_ARGUMENT);
 }

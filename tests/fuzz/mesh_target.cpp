@@ -73,6 +73,7 @@ class Measurer {
     measure(readable);
     paths(readable);
     simplify();
+    round();
     surface();
   }
 
@@ -150,6 +151,21 @@ class Measurer {
                                  mesh_.faces, other.xyz.data(), other.vertices, other.abc.data(),
                                  other.faces, apart.data(), &summary)) == readable,
             "distances where the mesh is not read, or none where it is");
+  }
+
+  void round() {
+    Room<float> rounded(3 * mesh_.vertices);
+    if (!ok(plc_mesh_round(context_.get(), mesh_.xyz.data(), mesh_.vertices, mesh_.abc.data(),
+                           mesh_.faces, rounded.data(), nullptr))) {
+      return;
+    }
+    const std::vector<double> xyz(rounded.data(), rounded.data() + 3 * mesh_.vertices);
+    plc_check check{};
+    check.struct_size = sizeof check;
+    require(ok(plc_check_mesh(context_.get(), xyz.data(), mesh_.vertices, mesh_.abc.data(),
+                              mesh_.faces, &check)) &&
+                check.valid == 1,
+            "a mesh rounded to floats that is not valid");
   }
 
   void simplify() {

@@ -112,6 +112,21 @@ def test_simplified_meshes_are_valid_and_within_the_tolerance(sphere):
         pellicle.simplify(sphere, float("nan"))
 
 
+def test_rounded_meshes_are_valid():
+    nearly = np.array([[x, y, z] for z in (0, 1, 1 + 1e-9, 2) for x, y in ((0, 0), (1, 0), (0, 1))])
+    tetrahedron = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    below = nearly[[0, 1, 2, 3]]  # its apex all but touches the base of the other
+    above = nearly[[6, 7, 8, 9]]
+    mesh = (np.concatenate([below, above]) + 1e3, np.concatenate([tetrahedron, tetrahedron + 4]))
+    assert pellicle.check_mesh(mesh).valid
+    assert not pellicle.check_mesh((mesh[0].astype(np.float32), mesh[1])).valid
+    rounded = pellicle.round_mesh(mesh)
+    assert rounded.dtype == np.float32 and pellicle.check_mesh((rounded, mesh[1])).valid
+    assert np.abs(rounded - mesh[0]).max() < 1e-3
+    with pytest.raises(pellicle.InvalidData, match="edge"):
+        pellicle.round_mesh((mesh[0], mesh[1][1:]))
+
+
 def test_arrays_of_other_types_are_taken_where_they_fit():
     vertices, faces = octahedron()
     expected = pellicle.check_mesh((vertices, faces))

@@ -155,7 +155,7 @@ class Extraction {
     const double last = before.parameters.iso;
     if (!nearer(volume_->voxels(), last, p.iso, p.inside_below != 0)) return;
     TriangleMesh start = mesh_of(context_.get(), surface_.get(), options_.space);
-    if (!doubles_) round_to_floats(start.xyz);  // as that of the file is
+    settle_precision(context_.get(), start);  // as that of the file is
     inputs_->start_from(std::move(start));
     p.init = PLC_INIT_MESH;
     p.levels = 0;

@@ -20,11 +20,17 @@ bool round_to_floats(std::vector<double>& xyz) {
 }
 
 bool settle_precision(plc_context* context, TriangleMesh& mesh) {
+  std::vector<float> rounded(mesh.xyz.size());
+  if (plc_mesh_round(context, mesh.xyz.data(), static_cast<int64_t>(mesh.xyz.size() / 3),
+                     mesh.abc.data(), static_cast<int64_t>(mesh.abc.size() / 3), rounded.data(),
+                     nullptr) == PLC_OK) {
+    mesh.xyz.assign(rounded.begin(), rounded.end());
+    mesh.doubles = false;
+    return true;
+  }
   std::vector<double> other = mesh.xyz;  // floats and doubles change places
   const bool finite = round_to_floats(mesh.xyz);
   const plc_check floats = finite ? check_of(context, mesh) : plc_check{};
-  mesh.doubles = false;
-  if (floats.valid != 0) return true;
   std::swap(mesh.xyz, other);
   const plc_check doubles = check_of(context, mesh);
   mesh.doubles = !finite || doubles.valid != 0 ||

@@ -28,6 +28,7 @@ from ._meshes import (
     distance,
     geodesic,
     nearest_vertex,
+    round_mesh,
     simplify,
 )
 from ._parameters import Parameters
@@ -106,6 +107,7 @@ __all__ = [
     "geometry_from_affine",
     "nearest_vertex",
     "read",
+    "round_mesh",
     "simplify",
     "threshold_otsu",
     "version",

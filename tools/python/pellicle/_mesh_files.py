@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._errors import InvalidData
-from ._meshes import check_mesh
+from ._meshes import check_mesh, round_mesh
 
 if TYPE_CHECKING:
     from ._surface import Surface
@@ -25,10 +25,12 @@ Faces = npt.NDArray[np.uint32]
 
 def settled_vertices(surface: Surface) -> Floats:
     """Coordinates with which the mesh is valid: float32 where they will do, else float64."""
-    candidates: list[Floats] = [surface.vertices, surface.vertices_f64]
-    for vertices in candidates:
-        if check_mesh((vertices, surface.faces), context=surface.context).valid:
-            return vertices
+    mesh = (surface.vertices_f64, surface.faces)
+    try:
+        return round_mesh(mesh, context=surface.context)
+    except InvalidData:
+        if check_mesh(mesh, context=surface.context).valid:
+            return mesh[0]
     raise InvalidData(
         "the voxels are so small beside their distance from the origin that faces meet in mm, even "
         "in double precision: in_space('voxel') holds the surface"

@@ -209,3 +209,24 @@ def simplify(
         core_of(context), arrays_of(mesh), float(tolerance), bool(one_sided)
     )
     return Simplified(vertices, faces, **bounds)
+
+
+def round_mesh(mesh: MeshLike, *, context: Context | None = None) -> npt.NDArray[np.float32]:
+    """The vertices of a valid mesh in float32, with which it is valid, too.
+
+    Where surfaces all but touch, rounding alone makes faces meet: their corners are moved apart,
+    by a few times what float32 is rounded by there.
+
+    Parameters
+    ----------
+    mesh : Surface or (vertices, faces)
+        Valid: `check_mesh` tells. Of a `Surface`, `vertices_f64`.
+    context : Context, optional
+
+    Raises
+    ------
+    InvalidData
+        Where the mesh is not valid, or too small beside its distance from the origin for float32.
+    """
+    vertices, _ = _pellicle.round_mesh(core_of(context), arrays_of(mesh))
+    return vertices

@@ -149,7 +149,7 @@ class Surface:
         """(n, 3) float64: as `vertices`, but not rounded to float32.
 
         That rounding makes faces meet where the surface lies millions of voxels away from the
-        space's origin.
+        space's origin, and rarely where parts of it all but touch, which `round_mesh` mends.
         """
         return self._core.positions_f64(self._space)
 

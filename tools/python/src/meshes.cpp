@@ -124,6 +124,18 @@ std::tuple<Values, Indices, py::dict> simplify(Context& context, const MeshArray
           Indices({record.faces, int64_t{3}}, abc.data()), dict_of(record)};
 }
 
+std::tuple<py::array_t<float>, int64_t> round_mesh(Context& context, const MeshArrays& mesh) {
+  const MeshView view(mesh);
+  py::array_t<float> rounded({view.vertex_count, int64_t{3}});
+  float* xyz = rounded.mutable_data();
+  int64_t moved = 0;
+  context.call([&](plc_context* handle) {
+    return plc_mesh_round(handle, view.xyz, view.vertex_count, view.abc, view.face_count, xyz,
+                          &moved);
+  });
+  return {rounded, moved};
+}
+
 }  // namespace
 
 MeshView::MeshView(const MeshArrays& mesh)
@@ -143,6 +155,7 @@ void bind_meshes(py::module_& module) {
   module.def("geodesic", &geodesic);
   module.def("distance", &distance);
   module.def("simplify", &simplify);
+  module.def("round_mesh", &round_mesh);
 }
 
 }  // namespace plc::python
