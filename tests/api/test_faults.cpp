@@ -274,6 +274,7 @@ TEST_CASE("measures and checks of a mesh survive every allocation that fails", "
   std::vector<double> values(xyz.size(), kUntouched);
   std::vector<double> new_xyz(xyz.size());
   std::vector<uint32_t> new_abc(abc.size());
+  std::vector<float> rounded(xyz.size());
   plc_context* c = context.get();
   using Call = std::function<plc_status()>;
   const std::vector<Call> calls = {
@@ -311,7 +312,6 @@ TEST_CASE("measures and checks of a mesh survive every allocation that fails", "
                                  new_xyz.data(), new_abc.data(), &simplified);
       },
       [&] {
-        std::vector<float> rounded(xyz.size());
         return plc_mesh_round(c, xyz.data(), vertices, abc.data(), faces, rounded.data(), nullptr);
       },
       [&] {
