@@ -284,7 +284,10 @@ typedef enum plc_init PLC_INT {
   PLC_INIT_ISO = 3,     /* the iso-surface of the coarsest image, closed at the border (figure 23);
                            of an adaptive mesh without parts and cavities of fewer than 27 voxels */
   PLC_INIT_MASK = 4,    /* the surface of the mask of plc_extras, reduced like the image */
-  PLC_INIT_MESH = 5     /* the mesh of plc_extras, brought to satisfy (1)-(3) */
+  PLC_INIT_MESH = 5,    /* the mesh of plc_extras, brought to satisfy (1)-(3) */
+  PLC_INIT_AUTO = 6     /* PLC_INIT_ISO on I_0, where the mesh is adaptive, levels is 0 or, by
+                           itself, becomes that, and there are no attachments and pins; else
+                           PLC_INIT_BUBBLE; the surface's parameters tell which */
 } plc_init;
 
 /* Which forces of the image act (3.8). */
@@ -352,7 +355,11 @@ typedef struct plc_parameters {
   plc_feature feature;
   double feature_sigma; /* of the Gaussian, mm, >= 0; 0: none */
   /* the pyramid */
-  int levels;       /* levels above I_0, the image; -1: 3, or fewer when that is small; 0: direct */
+  int levels;       /* levels above I_0, the image; 0: direct; -1: 3, or fewer when that is small,
+                       but 0 where init is PLC_INIT_AUTO, the mesh adaptive, late_bubbles 1, and of
+                       the image's voxels at most a 16th - 16,384 in small ones, 2^21 in large
+                       ones, with a memory_limit one for 2,400 bytes of that - are the object's
+                       and at its surface: in noise there are more */
   double reduction; /* rho, 1 < rho <= 2: how much longer voxels are from level to level */
   /* the start */
   plc_init init;
@@ -421,7 +428,8 @@ typedef struct plc_progress {
   size_t struct_size;
   int level;     /* h of the image I_h in which the mesh evolves; counts down to 0 */
   int levels;    /* levels above I_0 */
-  int iteration; /* of this level, from 1 */
+  int iteration; /* of this level, from 1; 0, without vertices, while it makes the surface to start
+                    from, of PLC_INIT_ISO, _MASK and _MESH */
   int64_t vertices;
   double energy;   /* kinetic energy along the normals, in m (delta / dt)^2 (5.1) */
   double speed;    /* of the fastest vertex, in delta per time */
@@ -429,7 +437,8 @@ typedef struct plc_progress {
   double seconds;  /* of evolution so far; of a run, within all calls on it */
 } plc_progress;
 
-/* Called on the calling thread after every iteration. Return 0 to go on, any other to cancel. */
+/* Called on the calling thread after every iteration, and now and then before the first. Return 0
+ * to go on, any other to cancel. */
 typedef int (*plc_progress_fn)(const plc_progress* progress, void* user);
 
 typedef struct plc_seed {
@@ -552,7 +561,10 @@ PLC_API plc_status plc_extract_volume(plc_context* context, const plc_volume* vo
                                       plc_surface** surface);
 
 /* The images I_0 .. I_levels of 4.2, normalised by the window, in the reduction, and the iso-values
- * pi_I on them. Reads of the parameters all up to `reduction`, and derives what they leave open.
+ * pi_I on them. Reads of the parameters all up to `reduction`, and derives what they leave open;
+ * where levels is -1, from init, mesh, late_bubbles, force, spring and edge, too. For a run with
+ * attachments or pins PLC_INIT_BUBBLE is better than PLC_INIT_AUTO, of which plc_extract then makes
+ * that.
  * The volume may be destroyed afterwards; where it borrows, its voxels must stay. May be used for
  * any number of runs, of any contexts, at the same time. PLC_INVALID_DATA: NaN or infinite voxels,
  * an image of 2^40 voxels or more or 2^31 in a plane, with its padding; a coarser level, or an
@@ -593,7 +605,8 @@ PLC_API plc_status plc_pyramid_values(plc_context* context, const plc_pyramid* p
  * parameters: those that the pyramid was made with, or plc_pyramid_parameters() of it; what the
  * pyramid does not read may differ. extras may be NULL; its callbacks are made during the calls
  * below, and their user pointers are kept; all else of it is copied. The pyramid may be destroyed.
- * The run holds the initial surface (3.6) of the coarsest level that shows the object.
+ * The run holds the initial surface (3.6) of the coarsest level that shows the object;
+ * PLC_CANCELLED, without a run, where progress says so while that is made.
  *
  * A call that fails with PLC_CANCELLED leaves the run between two iterations: it can go on. After
  * any other failure the run has ended without a result: its calls fail with PLC_INVALID_ARGUMENT
@@ -614,8 +627,9 @@ typedef struct plc_run_state {
   int done;           /* 1: I_0 has been left, or the level callback has said PLC_VERDICT_STOP */
   int between_levels; /* 1: the level below has come to its end, the next call starts the next one,
                          or there is none */
-  plc_progress progress; /* of the last iteration; zeros before the first. Its seconds are those
-                            spent within calls on this run, or before it was saved */
+  plc_progress
+      progress; /* of the last iteration; zeros before the first, but the fraction. Its seconds are
+                   those spent within calls on this run, or before it was saved */
 } plc_run_state;
 PLC_API void plc_run_state_defaults(plc_run_state* state);
 

@@ -39,7 +39,7 @@ struct HeadVolume {
     parameters.iso = kBone;
     parameters.mesh = PLC_MESH_UNIFORM;
     const auto range = plc::voxel_range(volume, schedule);
-    demand(plc::derive_parameters(volume, range, schedule, parameters, background));
+    demand(plc::derive_parameters(volume, range, schedule, 0, parameters, background));
   }
 
   // The pyramid of p, which differ from `parameters` in what is no value of the image, and what is

@@ -92,9 +92,13 @@ class BoundaryHistogram {
   }
 
   // Of the object's boundary voxels (side 1) or of those across it (side 0).
-  double median(size_t side) const {
+  uint64_t count(size_t side) const {
     uint64_t total = 0;
     for (const uint64_t n : bins_[side]) total += n;
+    return total;
+  }
+  double median(size_t side) const {
+    const uint64_t total = count(side);
     uint64_t before = 0;
     for (size_t b = 0; b < kBins; ++b) {
       before += bins_[side][b];
@@ -227,7 +231,8 @@ DerivedWindow derive_window(const VolumeView& volume, const VoxelRange& range, d
   const double below = inside_above ? out : in;
   const double above = inside_above ? in : out;
   DerivedWindow window{{std::max(range.low, iso - below), std::min(range.high, iso + above)},
-                       histogram.median(0)};
+                       histogram.median(0),
+                       histogram.count(1)};
   // The iso-value may be an end of the range: keep it inside.
   if (window.low >= iso) window.low = iso - below;
   if (window.high <= iso) window.high = iso + above;

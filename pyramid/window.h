@@ -1,5 +1,7 @@
 // The grey-level window derived from the image: what is mapped to 0 and 1 around the iso-value.
 #pragma once
+#include <cstdint>
+
 #include "pyramid/base_image.h"
 #include "pyramid/executor.h"
 #include "pyramid/pyramid.h"
@@ -8,7 +10,8 @@
 namespace plc {
 
 struct DerivedWindow : Window {
-  double background = 0;  // typical value across the surface from the object
+  double background = 0;    // typical value across the surface from the object
+  uint64_t at_surface = 0;  // voxels of the object that have one outside it for a face neighbour
 };
 
 // Typical values on either side of the iso-surface are the medians of the voxels of the object that

@@ -83,7 +83,9 @@ Status build(const std::shared_ptr<const VolumeData>& source, const plc_paramete
   pyramid.range = source->range ? *source->range : voxel_range(volume, host.schedule);
   if (Status s = check_range(pyramid.range); !s.ok()) return s;
   double background = 0;
-  if (Status s = derive_parameters(volume, pyramid.range, host.schedule, p, background); !s.ok()) {
+  if (Status s = derive_parameters(volume, pyramid.range, host.schedule, host.memory.limit(), p,
+                                   background);
+      !s.ok()) {
     return s;
   }
   const double images_start = now();

@@ -72,6 +72,7 @@ Status Run::prepare(std::shared_ptr<const PyramidData> pyramid, Pyramid images, 
     side = std::min(side, volume.spacing[a] * static_cast<double>(volume.dims[a]));
   }
   if (Status s = derive_mesh(unit, side, p); !s.ok()) return s;
+  derive_init(extras, p);
   RecoverySpec spec = recovery_spec(p, unit);
   spec.isos = pyramid_->isos;
   take_extras(extras, surface_->frame, spec);
@@ -109,7 +110,7 @@ Status Run::check_cost(const Pyramid& images, const RecoverySpec& spec) const {
   constexpr double kSure = 4;
   constexpr double kFew = 1000;
   const Cost cost = expected_cost(images, spec.isos, spec.inside_above, spec.pad_voxels, spec.scale,
-                                  host_->schedule);
+                                  spec.sizes && spec.start.init == Init::kIso, host_->schedule);
   const std::string what = "about " + number_text(cost.vertices, 3) + " vertices and " +
                            number_text(cost.bytes / (1 << 20), 3) + " MiB";
   if (cost.bytes / kSure > static_cast<double>(host_->memory.left()) ||

@@ -64,7 +64,7 @@ constexpr plc_parameter_info choice(Field f, int value, int first, const char* r
 }
 
 constexpr const char* kFeatures[] = {"none", "gradient_norm"};
-constexpr const char* kInits[] = {"bubble", "bubbles", "seeds", "iso", "mask", "mesh"};
+constexpr const char* kInits[] = {"bubble", "bubbles", "seeds", "iso", "mask", "mesh", "auto"};
 constexpr const char* kRestLengths[] = {"zero", "mean", "value"};
 constexpr const char* kForces[] = {"iso", "gradient", "both"};
 constexpr const char* kBounds[] = {"clamp", "scale"};
@@ -89,7 +89,7 @@ constexpr plc_parameter_info kList[] = {
     real(FIELD(feature_sigma), 0, 0, kMost, "0 .. 1e6 mm"),
     count(FIELD(levels), -1, -1, PLC_MAX_LEVELS - 1, "0 .. 31"),
     real(FIELD(reduction), PyramidSpec{}.reduction, kAboveOne, 2, "above 1 and at most 2"),
-    choice(FIELD(init), PLC_INIT_BUBBLE, PLC_INIT_BUBBLE, "a plc_init", kInits),
+    choice(FIELD(init), PLC_INIT_AUTO, PLC_INIT_BUBBLE, "a plc_init", kInits),
     count({"bubbles", offsetof(plc_parameters, bubbles), 3}, 1, 1, 256, "1 .. 256 per axis"),
     choice(FIELD(mesh), PLC_MESH_AUTO, PLC_MESH_UNIFORM, "a plc_mesh_kind", kMeshes),
     real(FIELD(edge), 0, 0, kMost, "0 .. 1e6 mm"),

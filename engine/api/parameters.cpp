@@ -101,8 +101,33 @@ Status check_parameters(const plc_parameters& p) {
   return {};
 }
 
+namespace {
+
+bool is_adaptive(const plc_parameters& p) {
+  if (p.mesh != PLC_MESH_AUTO) return p.mesh == PLC_MESH_ADAPTIVE;
+  return p.force == PLC_FORCE_ISO && p.spring == 0 && p.edge == 0;
+}
+
+// Whether the surface starts from the image's iso-surface, near where it ends, and not from a
+// bubble around a coarse image. That takes about kBytes for each of the voxels at_surface, which
+// must be half of a limit at most. Of noise there is no end of them: on a CT of an aorta they are
+// 18 % of all, on seven other images 1 to 4 %. In small images they are many, too, but cost little.
+bool starts_at_iso(const VolumeView& volume, uint64_t at_surface, int64_t memory_limit,
+                   const plc_parameters& p) {
+  constexpr double kPart = 1.0 / 16, kFew = 1 << 14, kMany = 1 << 21, kBytes = 1200;
+  const double voxels = static_cast<double>(volume.dims[0]) * static_cast<double>(volume.dims[1]) *
+                        static_cast<double>(volume.dims[2]);
+  const double count = static_cast<double>(at_surface);
+  const bool fits = memory_limit == 0 || kBytes * count <= static_cast<double>(memory_limit) / 2;
+  return p.init == PLC_INIT_AUTO && is_adaptive(p) && p.late_bubbles != 0 && fits &&
+         count <= std::clamp(kPart * voxels, kFew, kMany);
+}
+
+}  // namespace
+
 Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
-                         const Executor& executor, plc_parameters& p, double& background) {
+                         const Executor& executor, int64_t memory_limit, plc_parameters& p,
+                         double& background) {
   const bool above = p.inside_below == 0;
   if (range.low == range.high) {
     return {ErrorCode::kInvalidData,
@@ -118,7 +143,7 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
   const bool given =
       !std::isnan(p.window_low) && !std::isnan(p.window_high) && p.level_iso_count > 0;
   const DerivedWindow window = std::isnan(p.iso) || given
-                                   ? DerivedWindow{{range.low, range.high}, range.low}
+                                   ? DerivedWindow{{range.low, range.high}, range.low, 0}
                                    : derive_window(volume, range, p.iso, above, executor);
   background = window.background;
   if (std::isnan(p.window_low)) p.window_low = window.low;
@@ -144,6 +169,10 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
   if (Status s = check_surroundings(p); !s.ok()) return s;
   const int deepest = max_levels(padded_dims(volume.dims, kPadVoxels), p.reduction);
   if (p.levels < 0 && p.level_iso_count > 0) p.levels = p.level_iso_count - 1;
+  if (p.levels < 0 && !std::isnan(p.iso) &&
+      starts_at_iso(volume, window.at_surface, memory_limit, p)) {
+    p.levels = 0;
+  }
   if (p.levels < 0) p.levels = std::min(PyramidSpec{}.levels, deepest);
   return {};
 }
@@ -158,10 +187,7 @@ Status derive_edge(double unit, double side, plc_parameters& p) {
 }
 
 Status derive_mesh(double unit, double side, plc_parameters& p) {
-  if (p.mesh == PLC_MESH_AUTO) {
-    const bool adaptive = p.force == PLC_FORCE_ISO && p.spring == 0 && p.edge == 0;
-    p.mesh = adaptive ? PLC_MESH_ADAPTIVE : PLC_MESH_UNIFORM;
-  }
+  p.mesh = is_adaptive(p) ? PLC_MESH_ADAPTIVE : PLC_MESH_UNIFORM;
   if (p.mesh != PLC_MESH_ADAPTIVE) return derive_edge(unit, side, p);
   const double delta = unit / kUnitPerDelta;
   const SizeSpec sizes;
@@ -173,6 +199,16 @@ Status derive_mesh(double unit, double side, plc_parameters& p) {
   return {ErrorCode::kInvalidArgument, "edges of " + text(p.edge_min) + " .. " + text(p.edge_max) +
                                            " mm: must be a range within " + text(least) + " .. " +
                                            text(most) + " mm for voxels of " + text(unit) + " mm"};
+}
+
+bool holds_places(const plc_extras& extras) {
+  return extras.attachment_count > 0 || extras.pin_count > 0;
+}
+
+void derive_init(const plc_extras& extras, plc_parameters& p) {
+  if (p.init != PLC_INIT_AUTO) return;
+  const bool at_iso = p.mesh == PLC_MESH_ADAPTIVE && p.levels == 0 && p.late_bubbles != 0;
+  p.init = at_iso && !holds_places(extras) ? PLC_INIT_ISO : PLC_INIT_BUBBLE;
 }
 
 double level_iso_bound(const plc_parameters& p, double background) {

@@ -15,7 +15,8 @@ Status check_parameters(const plc_parameters& parameters);
 // `background` is set to the typical value across the surface from the object (window.h). Errors:
 // kInvalidArgument, kInvalidData (constant or not finite image, iso outside the range).
 Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
-                         const Executor& executor, plc_parameters& parameters, double& background);
+                         const Executor& executor, int64_t memory_limit, plc_parameters& parameters,
+                         double& background);
 
 // Image units to [0,1] of the window and back.
 inline double normalised(const plc_parameters& p, double value) {
@@ -34,6 +35,11 @@ PyramidSpec pyramid_spec(const plc_parameters& parameters);
 // Fills in the kind of mesh, and what is 0 of its lengths. unit: U_0, side: the image's shortest
 // one, mm. Errors: kInvalidArgument, edges that the image's voxels do not allow.
 Status derive_mesh(double unit, double side, plc_parameters& parameters);
+
+// Fills in the start, where that is PLC_INIT_AUTO; after derive_mesh().
+void derive_init(const plc_extras& extras, plc_parameters& parameters);
+// Attachments or pins: a bubble comes by them, an iso-surface may be too coarse there.
+bool holds_places(const plc_extras& extras);
 
 // Everything but the iso-values of the levels and what plc_extras holds. unit: U_0, mm.
 RecoverySpec recovery_spec(const plc_parameters& parameters, double unit);

@@ -24,7 +24,8 @@ struct Cost {
 // Estimated from the voxels' faces between the object and what surrounds it. For smooth objects it
 // is right within a third; for noise, which the mesh does not follow, it is too much. isos: of each
 // level; where there are none nothing is known, and the cost is 0 but for the voxels.
+// from_iso: an adaptive mesh that starts from the iso-surface of I_0.
 Cost expected_cost(const Pyramid& pyramid, const std::vector<double>& isos, bool inside_above,
-                   int pad, const MeshScale& scale, const Executor& executor);
+                   int pad, const MeshScale& scale, bool from_iso, const Executor& executor);
 
 }  // namespace plc

@@ -114,15 +114,22 @@ Status Recovery::start_level() {
     }
     const LevelImage level{pyramid_, level_,         spec_.pad_voxels,
                            space_,   iso_of(level_), spec_.inside_above};
+    const auto go_on = [this, parts = 0]() mutable {
+      if (levels_ == 0) progress_.fraction = ProgressEstimate::at_start(++parts);
+      return !hooks_.progress || hooks_.progress({level_, levels_, 0, 0, 0, 0, progress_.fraction});
+    };
     if (Status s = start_surface(spec_.start, level, delta_of(level_), schedule_, mesh_,
-                                 record().operations);
+                                 record().operations, go_on);
         !s.ok()) {
+      mesh_.clear();
+      records_.pop_back();
       return s;
     }
     evolution_.notify("start");
   }
   if (mesh_.vertex_count() == 0 && !mesh_.is_patch()) return leave_level();
   estimate_.start_level();
+  if (fresh) estimate_.add_start(record().operations);
   if (Status s = adapt(); !s.ok()) return s;
   if (Status s = build_gradient_image(); !s.ok()) return s;
   bool added = false;

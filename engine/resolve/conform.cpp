@@ -148,8 +148,8 @@ double longest_edge(const Mesh& mesh) {
   return std::sqrt(static_cast<double>(longest));
 }
 
-void settle(Mesh& mesh, const Executor& executor, Detection& detection, Resolution& resolution,
-            OperationCounts& counts) {
+Status settle(Mesh& mesh, const Executor& executor, Detection& detection, Resolution& resolution,
+              OperationCounts& counts, const GoOn& go_on) {
   mesh.renumber(morton_order(mesh, executor), executor);
   detection.restart();
   resolution.restart();
@@ -160,8 +160,10 @@ void settle(Mesh& mesh, const Executor& executor, Detection& detection, Resoluti
     std::fill(mesh.turns.begin(), mesh.turns.end(), uint8_t{0});
     detection.search_near_all();
     resolution.run(kIteration, {}, counts);
+    if (Status s = ask(go_on); !s.ok()) return s;
     if (counts.transformations() == before) break;
   }
+  return {};
 }
 
 void put_at_rest(Mesh& mesh, const Executor& executor) {
@@ -177,7 +179,8 @@ void put_at_rest(Mesh& mesh, const Executor& executor) {
 
 }  // namespace
 
-Status conform(Mesh& mesh, double delta, const Schedule& schedule, OperationCounts& counts) {
+Status conform(Mesh& mesh, double delta, const Schedule& schedule, OperationCounts& counts,
+               const GoOn& go_on) {
   mesh.delta = delta;
   for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.resize(v);
   if (Status s = divide_faces(mesh, schedule, counts); !s.ok()) return s;
@@ -188,11 +191,11 @@ Status conform(Mesh& mesh, double delta, const Schedule& schedule, OperationCoun
   double step = longest_edge(mesh) / static_cast<double>(kMaxEdge) * kRoom;
   while (step < delta && mesh.vertex_count() != 0) {
     mesh.delta = step;
-    settle(mesh, schedule, detection, resolution, counts);
+    if (Status s = settle(mesh, schedule, detection, resolution, counts, go_on); !s.ok()) return s;
     step *= kRefinement;
   }
   mesh.delta = delta;
-  settle(mesh, schedule, detection, resolution, counts);
+  if (Status s = settle(mesh, schedule, detection, resolution, counts, go_on); !s.ok()) return s;
   put_at_rest(mesh, schedule);
   if (mesh.vertex_count() == 0) {
     return {ErrorCode::kInvalidData,

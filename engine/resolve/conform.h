@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 
+#include "engine/base/go_on.h"
 #include "engine/base/schedule.h"
 #include "engine/base/statistics.h"
 #include "engine/mesh/mesh.h"
@@ -37,8 +38,9 @@ inline constexpr int kConformPasses = 20;
 //
 // Errors, with the mesh spoilt: kInvalidData when nothing is left - then it has no vertices - or
 // faces are so thin that rounding makes them meet when divided, and the guards refuse it, too;
-// kOutOfMemory for too many vertices; kInternal when the result is not embedded; throws
-// std::bad_alloc.
-Status conform(Mesh& mesh, double delta, const Schedule& schedule, OperationCounts& counts);
+// kOutOfMemory for too many vertices; kCancelled where go_on, asked after every pass, says so;
+// kInternal when the result is not embedded; throws std::bad_alloc.
+Status conform(Mesh& mesh, double delta, const Schedule& schedule, OperationCounts& counts,
+               const GoOn& go_on = {});
 
 }  // namespace plc

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/go_on.h"
 #include "engine/base/schedule.h"
 #include "engine/base/statistics.h"
 #include "engine/mesh/mesh.h"
@@ -53,8 +54,10 @@ struct LevelImage {
 // Clears the mesh and makes it the initial surface for `delta`. It has no vertices where the level
 // shows no object (kBubble, kIso, kMask). Errors: kInvalidArgument (bubbles or seeds too small, too
 // near each other), kInvalidData (a mesh that is not a closed, oriented, embedded surface, or a
-// surface that meets an obstacle of the mesh).
+// surface that meets an obstacle of the mesh), kCancelled, with the mesh spoilt, where go_on, asked
+// now and then, says so.
 Status start_surface(const StartSpec& spec, const LevelImage& level, double delta,
-                     const Schedule& schedule, Mesh& mesh, OperationCounts& counts);
+                     const Schedule& schedule, Mesh& mesh, OperationCounts& counts,
+                     const GoOn& go_on);
 
 }  // namespace plc

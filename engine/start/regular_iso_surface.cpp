@@ -143,12 +143,12 @@ bool set_apart(const Mesh& mesh, const Schedule& schedule, const Vector<uint64_t
 }  // namespace
 
 Status regular_iso_surface(const ImageObject& object, const LatticeValues& values,
-                           const Schedule& schedule, Mesh& mesh, int64_t least) {
+                           const Schedule& schedule, Mesh& mesh, int64_t least, const GoOn& go_on) {
   if (mesh.sizing != nullptr) {
     Crossings crossings;
     if (Status s = iso_crossings(object, values, least, schedule, crossings); !s.ok()) return s;
-    thin_out(arrays_of(crossings.xyz, crossings.abc), schedule, mesh);
-    return {};
+    if (Status s = ask(go_on); !s.ok()) return s;
+    return thin_out(arrays_of(crossings.xyz, crossings.abc), schedule, go_on, mesh);
   }
   Vector<uint64_t> voxel;
   if (Status s = iso_surface(object, values, schedule, mesh, &voxel); !s.ok()) {

@@ -255,9 +255,9 @@ Vector<Place> places_of(const MeshArraysOf<float>& surface, const Mesh& mesh,
 }
 
 // steps: of the surface's vertices, and then of the mesh's.
-void thin_out_blocks(const MeshArraysOf<float>& surface, const Vector<Place>& places,
-                     const Grid& grid, const Schedule& schedule, Vector<uint8_t>& steps,
-                     Mesh& mesh) {
+Status thin_out_blocks(const MeshArraysOf<float>& surface, const Vector<Place>& places,
+                       const Grid& grid, const Schedule& schedule, const GoOn& go_on,
+                       Vector<uint8_t>& steps, Mesh& mesh) {
   Thinning thinning(surface, places, grid, steps, mesh.most_neighbors, schedule);
   Vector<uint8_t> marked(grid.blocks(), 1);
   Vector<uint32_t> ids;
@@ -265,6 +265,7 @@ void thin_out_blocks(const MeshArraysOf<float>& surface, const Vector<Place>& pl
     thinning.run(marked);
     fill(mesh, thinning.mesh(), places, schedule, ids);
     const auto meeting = meeting_faces(mesh, schedule);
+    if (Status s = ask(go_on); !s.ok()) return s;
     if (meeting.empty()) break;
     // One of two faces that meet is not what it was: of what was merged into its corners something
     // took part in a step, and does so no more. So this ends.
@@ -286,16 +287,18 @@ void thin_out_blocks(const MeshArraysOf<float>& surface, const Vector<Place>& pl
   Vector<uint8_t> left(ids.size());
   for (size_t v = 0; v < ids.size(); ++v) left[v] = steps[ids[v]];
   steps.swap(left);
+  return {};
 }
 
 }  // namespace
 
-void thin_out(const MeshArraysOf<float>& surface, const Schedule& schedule, Mesh& mesh) {
+Status thin_out(const MeshArraysOf<float>& surface, const Schedule& schedule, const GoOn& go_on,
+                Mesh& mesh) {
   Vector<uint8_t> steps(surface.vertex_count, kSteps);
   Vector<Place> places = places_of(surface, mesh, schedule);
   const Grid grid(places, kSide * static_cast<float>(mesh.delta));
-  thin_out_blocks(surface, places, grid, schedule, steps, mesh);
-  if (grid.blocks() > 1) {
+  Status s = thin_out_blocks(surface, places, grid, schedule, go_on, steps, mesh);
+  if (s.ok() && grid.blocks() > 1) {
     Vector<float> xyz;
     for (uint32_t v = 0; v < mesh.slots(); ++v) {
       const Vec3 p = mesh.at(v);
@@ -304,9 +307,10 @@ void thin_out(const MeshArraysOf<float>& surface, const Schedule& schedule, Mesh
     const Vector<uint32_t> abc = mesh.faces();
     const auto rest = arrays_of(xyz, abc);
     places = places_of(rest, mesh, schedule);
-    thin_out_blocks(rest, places, Grid(places.size()), schedule, steps, mesh);
+    s = thin_out_blocks(rest, places, Grid(places.size()), schedule, go_on, steps, mesh);
   }
   for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.resize(v);
+  return s;
 }
 
 }  // namespace plc

@@ -1,6 +1,7 @@
 // A surface that is much finer than the sizes of an adaptive mesh, with as few vertices as those
 // ask for.
 #pragma once
+#include "engine/base/go_on.h"
 #include "engine/base/mesh_arrays.h"
 #include "engine/base/schedule.h"
 #include "engine/mesh/mesh.h"
@@ -18,7 +19,9 @@ namespace plc {
 //
 // surface: closed, oriented, a manifold, embedded, in mesh space; every vertex has a face. The
 // result is embedded, too, without gaps in its ids, which lie along a Morton curve. mesh.sizing is
-// not null. Throws std::bad_alloc.
-void thin_out(const MeshArraysOf<float>& surface, const Schedule& schedule, Mesh& mesh);
+// not null. Throws std::bad_alloc; kCancelled, with the mesh spoilt, where go_on, asked after every
+// search for faces that meet, says so.
+Status thin_out(const MeshArraysOf<float>& surface, const Schedule& schedule, const GoOn& go_on,
+                Mesh& mesh);
 
 }  // namespace plc

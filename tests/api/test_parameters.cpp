@@ -1,3 +1,4 @@
+#include <utility>
 #include "engine/api/parameters.h"
 
 #include <catch2/catch.hpp>
@@ -54,11 +55,12 @@ const samples::Volume& ball() {
   return volume;
 }
 
-plc::Status derive(plc_parameters& p, const samples::Volume& volume = ball()) {
+plc::Status derive(plc_parameters& p, const samples::Volume& volume = ball(),
+                   int64_t memory_limit = 0) {
   const plc::VolumeView view = volume.view();
   const plc::VoxelRange range = plc::voxel_range(view, samples::kSerial);
   double background = 0;
-  return plc::derive_parameters(view, range, samples::kSerial, p, background);
+  return plc::derive_parameters(view, range, samples::kSerial, memory_limit, p, background);
 }
 
 std::string not_derived(const Change& change, ErrorCode code = ErrorCode::kInvalidArgument) {
@@ -144,7 +146,7 @@ TEST_CASE("choices that are none are refused", "[parameters]") {
     static_assert(sizeof choice == sizeof value);
     std::memcpy(&choice, &value, sizeof value);
   };
-  CHECK(refusal([&](plc_parameters& p) { set(p.init, 6); }) == "init 6: must be a plc_init");
+  CHECK(refusal([&](plc_parameters& p) { set(p.init, 7); }) == "init 7: must be a plc_init");
   CHECK(refusal([&](plc_parameters& p) { set(p.rest_length, 3); }) ==
         "rest length 3: must be a plc_rest_length");
   CHECK(refusal([&](plc_parameters& p) { set(p.bound, 2); }) == "bound 2: must be a plc_bound");
@@ -184,7 +186,7 @@ TEST_CASE("what is not set is derived from the image", "[parameters]") {
   CHECK(p.window_low < 0.5);
   CHECK(p.window_high > 0.5);
   CHECK(p.pad_value == p.window_low);
-  CHECK(p.levels == 3);
+  CHECK(p.levels == 0);
   p = defaults();
   p.inside_below = 1;
   REQUIRE(derive(p).ok());
@@ -220,6 +222,7 @@ TEST_CASE("the number of levels comes from the iso-values of levels or from the 
   samples::Volume small = samples::sphere_potential(samples::empty_volume({3, 20, 20}), 0.3);
   p = defaults();
   p.iso = 0.3;
+  p.init = PLC_INIT_BUBBLE;
   REQUIRE(derive(p, small).ok());
   CHECK(p.levels == 2);
 }
@@ -337,8 +340,50 @@ TEST_CASE("the model is what was asked for, with the sign of the object's side",
   CHECK_FALSE(plc::recovery_spec(p, 1).inside_above);
 }
 
+TEST_CASE("an adaptive mesh starts from the iso-surface where the image is not mostly that",
+          "[parameters]") {
+  plc_extras extras;
+  plc_extras_defaults(&extras);
+  const auto start_of = [&extras](const std::function<void(plc_parameters&)>& change,
+                                  const samples::Volume& volume, int64_t memory_limit) {
+    plc_parameters p = defaults();
+    change(p);
+    REQUIRE(derive(p, volume, memory_limit).ok());
+    REQUIRE(plc::derive_mesh(1, 40, p).ok());
+    plc::derive_init(extras, p);
+    return std::pair(static_cast<int>(p.init), p.levels);
+  };
+  const auto as_is = [](plc_parameters&) {};
+  const std::pair iso(static_cast<int>(PLC_INIT_ISO), 0);
+  const std::pair bubble(static_cast<int>(PLC_INIT_BUBBLE), 3);
+  const samples::Volume ball = samples::sphere_potential(samples::empty_volume({40, 40, 40}), 0.3);
+  CHECK(start_of(as_is, ball, 0) == iso);
+  CHECK(start_of([](plc_parameters& p) { p.mesh = PLC_MESH_UNIFORM; }, ball, 0) == bubble);
+  CHECK(start_of([](plc_parameters& p) { p.edge = 2; }, ball, 0) == bubble);
+  CHECK(start_of([](plc_parameters& p) { p.late_bubbles = 0; }, ball, 0) == bubble);
+  CHECK(start_of([](plc_parameters& p) { p.init = PLC_INIT_BUBBLE; }, ball, 0) == bubble);
+  CHECK(start_of([](plc_parameters& p) { p.levels = 0; }, ball, 0) == iso);
+  CHECK(start_of([](plc_parameters& p) { p.levels = 3; }, ball, 0) == bubble);
+  // About 1,200 voxels at its surface.
+  CHECK(start_of(as_is, ball, 16 << 20) == iso);
+  CHECK(start_of(as_is, ball, 1 << 20) == bubble);
+  extras.pin_count = 1;
+  CHECK(start_of(as_is, ball, 0) == std::pair(static_cast<int>(PLC_INIT_BUBBLE), 0));
+  extras.pin_count = 0;
+  samples::Volume noise = samples::empty_volume({60, 60, 60});
+  noise.values.resize(size_t{60} * 60 * 60);
+  for (size_t i = 0; i < noise.values.size(); ++i) {
+    noise.values[i] = static_cast<float>(i * 2654435761U % 1000) / 1000;
+  }
+  CHECK(start_of(as_is, noise, 0) == bubble);
+}
+
 TEST_CASE("the engine's own defaults are those that are shipped", "[parameters]") {
-  const plc::RecoverySpec shipped = plc::recovery_spec(defaults(), 1), own;
+  plc_parameters p = defaults();
+  plc_extras extras;
+  plc_extras_defaults(&extras);
+  plc::derive_init(extras, p);
+  const plc::RecoverySpec shipped = plc::recovery_spec(p, 1), own;
   CHECK(own.model.curvature == shipped.model.curvature);
   CHECK(own.model.spring == shipped.model.spring);
   CHECK(own.model.rest_length == shipped.model.rest_length);
@@ -370,6 +415,7 @@ TEST_CASE("the pyramid's own defaults are those that are shipped, of an image fr
   plc_parameters p = defaults();
   p.window_low = 0;
   p.window_high = 1;
+  p.init = PLC_INIT_BUBBLE;
   REQUIRE(derive(p).ok());
   const plc::PyramidSpec shipped = plc::pyramid_spec(p), own;
   CHECK(own.reduction == shipped.reduction);

@@ -186,6 +186,7 @@ TEST_CASE("the norm of the gradient as feature shows the object's contour, insid
   const plc_image image = image_of(volume);
   plc_parameters p = parameters(0.125, 0);
   p.feature = PLC_FEATURE_GRADIENT_NORM;
+  p.init = PLC_INIT_BUBBLE;
   const Surface surface = extract(context.get(), image, p);
   CHECK(samples::range_of(surface.get())[0] == Approx(0).margin(1e-6));
   CHECK(samples::range_of(surface.get())[1] == Approx(0.25).epsilon(0.02));

@@ -305,6 +305,10 @@ TEST_CASE("levels are reported from coarse to fine", "[pellicle]") {
 TEST_CASE("the parameters as used have everything filled in", "[pellicle]") {
   const Context context = samples::make_context();
   plc_parameters p = samples::parameters(0.5, -1);
+  const Surface at_iso = samples::extract(context.get(), framed(kFrames[0]), p);
+  CHECK(samples::parameters_of(at_iso.get()).init == PLC_INIT_ISO);
+  CHECK(samples::parameters_of(at_iso.get()).levels == 0);
+  p.init = PLC_INIT_BUBBLE;
   const Surface surface = samples::extract(context.get(), framed(kFrames[0]), p);
   const plc_parameters used = samples::parameters_of(surface.get());
   CHECK(used.struct_size == sizeof used);

@@ -16,7 +16,7 @@ namespace campaign {
 
 namespace {
 
-constexpr const char* kInitNames[] = {"bubble", "bubbles", "seeds", "iso", "mask", "mesh"};
+constexpr const char* kInitNames[] = {"bubble", "bubbles", "seeds", "iso", "mask", "mesh", "auto"};
 constexpr const char* kTypeNames[] = {"u8", "i16", "u16", "i32", "f32"};
 constexpr int64_t kEndless = int64_t{1} << 40;
 constexpr const char* kSpaceNames[] = {"LPS", "RAS", "voxel"};
@@ -185,7 +185,7 @@ plc_extras Case::extras() const {
 }
 
 const char* init_name(plc_init init) {
-  return init <= PLC_INIT_MESH ? kInitNames[init] : "?";
+  return init <= PLC_INIT_AUTO ? kInitNames[init] : "?";
 }
 
 Case make_case(uint64_t seed) {

@@ -228,8 +228,8 @@ void choose_start(Case& c) {
   Random random = draws(c.seed, Part::kStart);
   plc_parameters& p = c.parameters;
   c.space = static_cast<plc_space>(random.integer(PLC_SPACE_LPS, PLC_SPACE_VOXEL));
-  constexpr plc_init kInits[] = {PLC_INIT_BUBBLE, PLC_INIT_BUBBLE, PLC_INIT_BUBBLES, PLC_INIT_SEEDS,
-                                 PLC_INIT_ISO,    PLC_INIT_ISO,    PLC_INIT_MASK,    PLC_INIT_MESH};
+  constexpr plc_init kInits[] = {PLC_INIT_AUTO, PLC_INIT_BUBBLE, PLC_INIT_BUBBLES, PLC_INIT_SEEDS,
+                                 PLC_INIT_ISO,  PLC_INIT_ISO,    PLC_INIT_MASK,    PLC_INIT_MESH};
   p.init = random.one_of(kInits);
   if (p.init == PLC_INIT_ISO && std::isnan(p.iso)) p.init = PLC_INIT_BUBBLE;
   if (p.init == PLC_INIT_BUBBLES) choose_bubbles(c, random);

@@ -41,7 +41,8 @@ int Watch::progress(const plc_progress& p) {
                                   ", fraction " + std::to_string(p.fraction));
   }
   work_ += p.vertices;
-  if (way_.steps && way_.pause_at == iterations() && !record_.paused) {
+  // What is cancelled before the first iteration makes no run.
+  if (way_.steps && p.iteration > 0 && way_.pause_at == iterations() && !record_.paused) {
     record_.paused = true;
     return 1;
   }

@@ -176,7 +176,8 @@ def test_parameters_by_name_and_as_an_object_are_the_same():
 def test_defaults_are_those_of_the_engine():
     surface = pellicle.extract(pill(), 100)
     defaults = pellicle.Parameters()
-    for name in ("curvature", "epsilon", "init", "rest_length", "anisotropy", "late_bubbles"):
+    assert (surface.parameters.init, surface.parameters.levels) == ("iso", 0)
+    for name in ("curvature", "epsilon", "rest_length", "anisotropy", "late_bubbles"):
         assert getattr(surface.parameters, name) == getattr(defaults, name)
     assert defaults.iso is None and defaults.levels is None and defaults.window_low is None
 

@@ -16,9 +16,9 @@ samples::Run ball(std::array<double, 3> spacing = {1, 1, 1}) {
   return run;
 }
 
-plc::Cost cost_of(const samples::Run& run, Anisotropy anisotropy) {
+plc::Cost cost_of(const samples::Run& run, Anisotropy anisotropy, bool from_iso = false) {
   return plc::expected_cost(samples::pyramid_of(run), run.recovery.isos, run.recovery.inside_above,
-                            run.recovery.pad_voxels, {anisotropy}, samples::kSerial);
+                            run.recovery.pad_voxels, {anisotropy}, from_iso, samples::kSerial);
 }
 
 }  // namespace
@@ -31,6 +31,9 @@ TEST_CASE("what a run will cost is told within a third before it starts", "[cost
   CHECK(cost.vertices == Approx(r.mesh.vertex_count()).epsilon(0.33));
   CHECK(cost.voxels == 40 * 40 * 40);
   CHECK(cost.bytes > 200 * cost.vertices);
+  const plc::Cost from_iso = cost_of(run, run.recovery.scale.anisotropy, true);
+  CHECK(from_iso.vertices == cost.vertices);
+  CHECK(from_iso.bytes > 2 * cost.bytes);
 }
 
 TEST_CASE("no image has room for more vertices than so many for each voxel", "[cost]") {

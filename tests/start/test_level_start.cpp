@@ -52,7 +52,7 @@ struct Started {
     samples::fill_mesh(mesh, samples::moved(samples::sphere(1), 3, 3, 3), 7);
     const plc::Schedule schedule(threads);
     plc::OperationCounts counts;
-    status = plc::start_surface(spec, level, delta, schedule, mesh, counts);
+    status = plc::start_surface(spec, level, delta, schedule, mesh, counts, {});
   }
   double volume() const { return samples::volume(mesh) * cubic_mm; }
 };

@@ -66,7 +66,7 @@ TEST_CASE("the bubble around a long image, and a ball of millimetres in flat vox
     start.seeds = {{{4, 150, 4}, {3, 40, 3}}};
     Mesh mesh;
     plc::OperationCounts counts;
-    REQUIRE(plc::start_surface(start, level, 0.83, schedule, mesh, counts).ok());
+    REQUIRE(plc::start_surface(start, level, 0.83, schedule, mesh, counts, {}).ok());
     CHECK(samples::component_count(mesh) == 1);
     CHECK(density(mesh) < 0.5);
   }

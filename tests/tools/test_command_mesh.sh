@@ -154,7 +154,7 @@ is "a start from a file" "$(json out/f-590.json .parameters.init)" "mesh=out/f-6
 works "a start of which the file has less" 0 "$pellicle" extract blobs.nrrd --iso 600,590 --keep largest --quiet \
   -o out/k.ply --report out/k.json
 is "a start of which the file has less" "$(json out/k-590.json .parameters.init)" "surface of 600 before --keep"
-is "the first has none" "$(json out/k-600.json .parameters.init)" bubble
+is "the first has none" "$(json out/k-600.json .parameters.init)" iso
 is "it starts from all bodies" "$(json out/k-590.json .hash)" "$(json out/f-590.json .hash)"
 left_over >/dev/null
 refused "mesh --keep of none" "--keep leaves none" "$pellicle" mesh parts.ply --keep 1e9mm3 -o out/a.ply

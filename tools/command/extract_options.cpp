@@ -106,7 +106,9 @@ std::vector<plc_seed> read_seeds(const std::string& text) {
 
 void read_init(const std::string& text, ExtractOptions& o) {
   plc_parameters& p = o.parameters;
-  if (text == "bubble") {
+  if (text == "auto") {
+    p.init = PLC_INIT_AUTO;
+  } else if (text == "bubble") {
     p.init = PLC_INIT_BUBBLE;
   } else if (text == "iso") {
     p.init = PLC_INIT_ISO;
@@ -125,7 +127,7 @@ void read_init(const std::string& text, ExtractOptions& o) {
     o.init_file = mesh;
   } else {
     refuse_value("--init", text,
-                 "bubble, bubbles=NX,NY,NZ, seeds=X,Y,Z,R;..., iso, mask=FILE or mesh=FILE");
+                 "auto, bubble, bubbles=NX,NY,NZ, seeds=X,Y,Z,R;..., iso, mask=FILE or mesh=FILE");
   }
 }
 
@@ -248,7 +250,7 @@ class Declarations {
 
   void pyramid() {
     group_ = "Pyramid and start";
-    text("--levels", "M", "3, fewer for small images",
+    text("--levels", "M", "as --init has it, else 3, fewer for small images",
          "Levels of the pyramid above the full image; 0: direct, without a pyramid",
          [&p = p_](const std::string& s) {
            p.levels = to_integer("--levels", s);
@@ -263,7 +265,10 @@ class Declarations {
            "mm (metric)");
     text(
         "--init", "KIND", init_text(options_),
-        "What the surface starts from: bubble, one around the object; bubbles=NX,NY,NZ, a grid of "
+        "What the surface starts from: auto, iso on the full image for an adaptive mesh where "
+        "noise "
+        "does not make that too large, else bubble; bubble, one around the object; "
+        "bubbles=NX,NY,NZ, a grid of "
         "them over the image, each count 1 .. 256; seeds=X,Y,Z,R;..., spheres (centres in "
         "--space and in the image, R in mm); iso, the iso-surface of the coarsest image; "
         "mask=FILE, the surface of the voxels "
@@ -424,6 +429,8 @@ std::string init_text(const ExtractOptions& o) {
       return "mask=" + o.init_file;
     case PLC_INIT_MESH:
       return "mesh=" + o.init_file;
+    case PLC_INIT_AUTO:
+      return "auto";
   }
   return "?";
 }

@@ -128,6 +128,7 @@ int run_block_plan(BlockOptions& options, InterruptGuard& interrupt) {
   // The longer edges may be, the larger blocks must be.
   plc_parameters& p = options.extract.parameters;
   if (p.mesh == PLC_MESH_AUTO) p.mesh = PLC_MESH_UNIFORM;
+  p.init = PLC_INIT_BUBBLE;  // the levels above the blocks are done by plan
   const double start = now();
   interrupt.end_at_once();
   ExtractVolume volume(options.extract);

@@ -36,6 +36,11 @@ double period_of(Progress to, bool terminal) {
 
 std::string text_of(const plc_progress& p) {
   char text[160];
+  if (p.iteration == 0) {
+    std::snprintf(text, sizeof text, "level %d (%d to 0), surface to start from", p.level,
+                  p.levels);
+    return text;
+  }
   std::snprintf(text, sizeof text,
                 "level %d (%d to 0), iteration %d, %" PRId64 " vertices, energy %.1e", p.level,
                 p.levels, p.iteration, p.vertices, p.energy);

@@ -16,7 +16,7 @@ TraceFile::TraceFile(std::string path) : path_(std::move(path)) {
 }
 
 void TraceFile::add(const plc_progress& p) {
-  if (path_.empty()) return;
+  if (path_.empty() || p.iteration == 0) return;  // no iteration yet
   std::array<char, 200> line{};
   std::snprintf(line.data(), line.size(), "%d,%d,%d,%" PRId64 ",%.9g,%.9g,%.6f,%.6f\n",
                 ++iteration_, p.level, p.iteration, p.vertices, p.energy, p.speed, p.seconds,

@@ -21,7 +21,7 @@ class CommonChanges(TypedDict, total=False):
     feature_sigma: float
     levels: int | None
     reduction: float
-    init: Literal["bubble", "bubbles", "seeds", "iso", "mask", "mesh"]
+    init: Literal["bubble", "bubbles", "seeds", "iso", "mask", "mesh", "auto"]
     bubbles: tuple[int, int, int]
     edge: float
     tolerance: float

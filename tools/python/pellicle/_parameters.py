@@ -44,11 +44,13 @@ class Parameters:
     feature_sigma : float
         Of the Gaussian before the gradient, mm; 0: none.
     levels : int or None
-        Levels above the full image. None: 3, or fewer when the image is small; 0: direct.
+        Levels above the full image. 0: direct. None: as `init` has it, else 3, or fewer when the
+        image is small.
     reduction : float
         Of the size from level to level, 1 < reduction <= 2.
-    init : {"bubble", "bubbles", "seeds", "iso", "mask", "mesh"}
-        What the surface starts from (3.6). `seeds=`, `mask=`, `mesh=` and `bubbles=` imply theirs
+    init : {"bubble", "bubbles", "seeds", "iso", "mask", "mesh", "auto"}
+        What the surface starts from (3.6); auto: the iso-surface of the full image, with 0 levels,
+        for an adaptive mesh where noise does not make that too large, else a bubble. `seeds=`, `mask=`, `mesh=` and `bubbles=` imply theirs
         where `init` is not given.
     bubbles : tuple of int
         How many bubbles along x, y, z, each 1 .. 256.
@@ -111,7 +113,7 @@ class Parameters:
     feature_sigma: float = _D["feature_sigma"]
     levels: int | None = _D["levels"]
     reduction: float = _D["reduction"]
-    init: Literal["bubble", "bubbles", "seeds", "iso", "mask", "mesh"] = _D["init"]
+    init: Literal["bubble", "bubbles", "seeds", "iso", "mask", "mesh", "auto"] = _D["init"]
     bubbles: tuple[int, int, int] = _D["bubbles"]
     mesh: Literal["uniform", "adaptive", "auto"] = _D["mesh"]
     edge: float = _D["edge"]
