@@ -287,7 +287,8 @@ typedef enum plc_init PLC_INT {
   PLC_INIT_MESH = 5,    /* the mesh of plc_extras, brought to satisfy (1)-(3) */
   PLC_INIT_AUTO = 6     /* PLC_INIT_ISO on I_0, where the mesh is adaptive, levels is 0 or, by
                            itself, becomes that, and there are no attachments and pins; else
-                           PLC_INIT_BUBBLE; the surface's parameters tell which */
+                           PLC_INIT_BUBBLE, with those on I_0 alone, which takes long: ask for it;
+                           the surface's parameters tell which */
 } plc_init;
 
 /* Which forces of the image act (3.8). */
@@ -562,9 +563,7 @@ PLC_API plc_status plc_extract_volume(plc_context* context, const plc_volume* vo
 
 /* The images I_0 .. I_levels of 4.2, normalised by the window, in the reduction, and the iso-values
  * pi_I on them. Reads of the parameters all up to `reduction`, and derives what they leave open;
- * where levels is -1, from init, mesh, late_bubbles, force, spring and edge, too. For a run with
- * attachments or pins PLC_INIT_BUBBLE is better than PLC_INIT_AUTO, of which plc_extract then makes
- * that.
+ * where levels is -1, from init, mesh, late_bubbles, force, spring and edge, too.
  * The volume may be destroyed afterwards; where it borrows, its voxels must stay. May be used for
  * any number of runs, of any contexts, at the same time. PLC_INVALID_DATA: NaN or infinite voxels,
  * an image of 2^40 voxels or more or 2^31 in a plane, with its padding; a coarser level, or an

@@ -25,7 +25,6 @@ Status extract(plc_context& context, const TakeVolume& take, const plc_parameter
   std::shared_ptr<const VolumeData> volume;
   if (Status s = take(volume); !s.ok()) return s;
   if (Status s = check_extras(extras, p, volume->view, volume->frame, e, mask); !s.ok()) return s;
-  if (p.init == PLC_INIT_AUTO && holds_places(e)) p.init = PLC_INIT_BUBBLE;
   const auto pyramid = std::make_shared<PyramidData>();
   pyramid->host = context.host;
   if (Status s = build(volume, p, *pyramid); !s.ok()) return s;

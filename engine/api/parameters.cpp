@@ -201,14 +201,11 @@ Status derive_mesh(double unit, double side, plc_parameters& p) {
                                            text(most) + " mm for voxels of " + text(unit) + " mm"};
 }
 
-bool holds_places(const plc_extras& extras) {
-  return extras.attachment_count > 0 || extras.pin_count > 0;
-}
-
 void derive_init(const plc_extras& extras, plc_parameters& p) {
   if (p.init != PLC_INIT_AUTO) return;
   const bool at_iso = p.mesh == PLC_MESH_ADAPTIVE && p.levels == 0 && p.late_bubbles != 0;
-  p.init = at_iso && !holds_places(extras) ? PLC_INIT_ISO : PLC_INIT_BUBBLE;
+  const bool draws = extras.attachment_count > 0 || extras.pin_count > 0;
+  p.init = at_iso && !draws ? PLC_INIT_ISO : PLC_INIT_BUBBLE;
 }
 
 double level_iso_bound(const plc_parameters& p, double background) {

@@ -36,10 +36,9 @@ PyramidSpec pyramid_spec(const plc_parameters& parameters);
 // one, mm. Errors: kInvalidArgument, edges that the image's voxels do not allow.
 Status derive_mesh(double unit, double side, plc_parameters& parameters);
 
-// Fills in the start, where that is PLC_INIT_AUTO; after derive_mesh().
+// Fills in the start, where that is PLC_INIT_AUTO; after derive_mesh(). A bubble comes by
+// attachments and pins; an iso-surface may be too coarse there.
 void derive_init(const plc_extras& extras, plc_parameters& parameters);
-// Attachments or pins: a bubble comes by them, an iso-surface may be too coarse there.
-bool holds_places(const plc_extras& extras);
 
 // Everything but the iso-values of the levels and what plc_extras holds. unit: U_0, mm.
 RecoverySpec recovery_spec(const plc_parameters& parameters, double unit);

@@ -266,6 +266,7 @@ def test_attachments_draw_the_surface_and_pins_hold_it():
     place = [15.5, 15.5, 27]
     free = pellicle.extract(ball(), 0.5, levels=0)
     drawn = pellicle.extract(ball(), 0.5, levels=0, attachments=[*place, 4, 20])
+    assert (free.parameters.init, drawn.parameters.init) == ("iso", "bubble")
 
     def gap(surface):
         return np.linalg.norm(surface.vertices - place, axis=1).min()

@@ -155,6 +155,10 @@ works "a start of which the file has less" 0 "$pellicle" extract blobs.nrrd --is
   -o out/k.ply --report out/k.json
 is "a start of which the file has less" "$(json out/k-590.json .parameters.init)" "surface of 600 before --keep"
 is "the first has none" "$(json out/k-600.json .parameters.init)" iso
+echo "pin 10 10 10 3" > pin.txt
+works "a start with places" 0 "$pellicle" extract blobs.nrrd --iso 600 --attach pin.txt --quiet -o out/p.ply \
+  --report out/p.json
+is "a start with places" "$(json out/p.json '.parameters | "\(.init) \(.levels)"')" "bubble 3"
 is "it starts from all bodies" "$(json out/k-590.json .hash)" "$(json out/f-590.json .hash)"
 left_over >/dev/null
 refused "mesh --keep of none" "--keep leaves none" "$pellicle" mesh parts.ply --keep 1e9mm3 -o out/a.ply

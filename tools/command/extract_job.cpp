@@ -13,12 +13,17 @@ namespace {
 
 ExtractJob job_of(const ExtractOptions& options, const plc_parameters& parameters,
                   const IsoChoice& iso, const std::string& name) {
-  return {parameters,
-          iso,
-          named(options.output, name),
-          named(options.report, name),
-          named(options.trace, name),
-          false};
+  ExtractJob job{parameters,
+                 iso,
+                 named(options.output, name),
+                 named(options.report, name),
+                 named(options.trace, name),
+                 false};
+  // A bubble comes by the places; on its way through the levels that is fast.
+  if (!options.attach.empty() && parameters.init == PLC_INIT_AUTO) {
+    job.parameters.init = PLC_INIT_BUBBLE;
+  }
+  return job;
 }
 
 int64_t object_voxels(const Voxels& voxels, double iso, bool inside_below) {

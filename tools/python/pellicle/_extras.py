@@ -82,6 +82,9 @@ class Extras:
         implied = starts or [name for name in ("bubbles",) if name in given]
         if "init" not in given and parameters.init == Parameters.init and len(implied) == 1:
             parameters = parameters.replace(init=implied[0])  # type: ignore[arg-type]
+        drawn = self.attachments is not None or self.pins is not None
+        if drawn and parameters.init == "auto":
+            parameters = parameters.replace(init="bubble")
         for name in starts:
             if parameters.init != name:
                 raise ValueError(f"{name} are for init={name!r}, not for {parameters.init!r}")
