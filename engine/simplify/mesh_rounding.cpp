@@ -125,15 +125,18 @@ int64_t count_moved(const MeshArrays& mesh, const Vector<double>& xyz) {
   return moved;
 }
 
+Status not_held() {
+  return {ErrorCode::kInvalidData, "rounded to floats, faces of the mesh meet"};
+}
+
 }  // namespace
 
 Status round_to_floats(const MeshArrays& mesh, const Executor& executor, RoundedMesh& rounded) {
-  const Status no = {ErrorCode::kInvalidData, "rounded to floats, faces of the mesh meet"};
   Vector<double> at(mesh.xyz, mesh.xyz + 3 * mesh.vertex_count);
   Vector<double> xyz(at.size());
   round_all(at, xyz);
   const auto finite = [](double x) { return std::isfinite(x); };
-  if (!std::all_of(xyz.begin(), xyz.end(), finite)) return no;
+  if (!std::all_of(xyz.begin(), xyz.end(), finite)) return not_held();
   const MeshArrays made{xyz.data(), mesh.vertex_count, mesh.abc, mesh.face_count};
   MeshCheck check;
   for (double roundings = 2;; roundings *= 2) {
@@ -142,13 +145,13 @@ Status round_to_floats(const MeshArrays& mesh, const Executor& executor, Rounded
     if (roundings == 2) {
       if (Status s = demand_valid(mesh, executor); !s.ok()) return s;
     }
-    if (check.self_intersections == 0) return no;
+    if (check.self_intersections == 0) return not_held();
     for (const auto& [i, k] : self_intersections(made, executor)) {
       const uint32_t *f = mesh.face(i), *g = mesh.face(k);
       const Apart faces(f, g, mesh);
       const double step = roundings * kRounding *
                           std::max(largest_coordinate(mesh, f), largest_coordinate(mesh, g));
-      if (!(step < kMostOfEdge * faces.shortest_edge())) return no;
+      if (!(step < kMostOfEdge * faces.shortest_edge())) return not_held();
       const Double3 by = faces.direction() * step;
       const auto move = [&](uint32_t v, double sign) {
         double* p = at.data() + 3 * static_cast<size_t>(v);
