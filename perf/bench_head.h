@@ -24,7 +24,7 @@ struct HeadVolume {
   plc::tools::LoadedVolume file;
   plc::VolumeView volume;
   plc_parameters parameters{};
-  double background = 0;
+  plc::DerivedWindow window;
 
   // Throws Failure.
   HeadVolume(const std::string& path, const plc::Schedule& schedule)
@@ -39,7 +39,7 @@ struct HeadVolume {
     parameters.iso = kBone;
     parameters.mesh = PLC_MESH_UNIFORM;
     const auto range = plc::voxel_range(volume, schedule);
-    demand(plc::derive_parameters(volume, range, schedule, 0, parameters, background));
+    demand(plc::derive_parameters(volume, range, schedule, 0, parameters, window));
   }
 
   // The pyramid of p, which differ from `parameters` in what is no value of the image, and what is
@@ -49,7 +49,7 @@ struct HeadVolume {
     demand(plc::build_pyramid(volume, plc::pyramid_spec(p), schedule, pyramid));
     plc::RecoverySpec spec = plc::recovery_spec(p, pyramid.levels[0].unit);
     spec.isos = plc::covering_isos(pyramid, plc::normalised(p, kBone), true,
-                                   plc::level_iso_bound(p, background), schedule);
+                                   plc::level_iso_bound(p, window.background), schedule);
     return spec;
   }
 };

@@ -82,9 +82,9 @@ Status build(const std::shared_ptr<const VolumeData>& source, const plc_paramete
   }
   pyramid.range = source->range ? *source->range : voxel_range(volume, host.schedule);
   if (Status s = check_range(pyramid.range); !s.ok()) return s;
-  double background = 0;
-  if (Status s = derive_parameters(volume, pyramid.range, host.schedule, host.memory.limit(), p,
-                                   background);
+  DerivedWindow window;
+  if (Status s =
+          derive_parameters(volume, pyramid.range, host.schedule, host.memory.limit(), p, window);
       !s.ok()) {
     return s;
   }
@@ -93,12 +93,17 @@ Status build(const std::shared_ptr<const VolumeData>& source, const plc_paramete
   spec.sparse = source->range.has_value() && parameters.level_iso_count > 0;
   if (Status s = build_pyramid(volume, spec, host.schedule, pyramid.images); !s.ok()) return s;
   pyramid.seconds_images = now() - images_start;
-  choose_isos(volume, background, pyramid);
+  choose_isos(volume, window.background, pyramid);
   close_borders(pyramid);
+  // Of which an adaptive mesh may start (PLC_INIT_AUTO); not counted where nothing is derived of
+  // it.
+  const std::string surface = window.at_surface == 0 ? ""
+                                                     : ", " + std::to_string(window.at_surface) +
+                                                           " voxels of the object at its surface";
   host.log(PLC_LOG_INFO, "window " + number_text(p.window_low) + " .. " +
                              number_text(p.window_high) + ", surrounded by " +
                              number_text(p.pad_value) + ", " + std::to_string(p.levels) +
-                             " levels above the image");
+                             " levels above the image" + surface);
   pyramid.seconds = now() - start;
   return {};
 }

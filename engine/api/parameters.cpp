@@ -6,7 +6,6 @@
 
 #include "engine/api/parameter_list.h"
 #include "engine/base/constants.h"
-#include "pyramid/window.h"
 
 namespace plc {
 
@@ -69,6 +68,26 @@ double usual_edge(double unit) {
   return kMeanEdge * unit / kUnitPerDelta;
 }
 
+bool is_adaptive(const plc_parameters& p) {
+  if (p.mesh != PLC_MESH_AUTO) return p.mesh == PLC_MESH_ADAPTIVE;
+  return p.force == PLC_FORCE_ISO && p.spring == 0 && p.edge == 0;
+}
+
+// Whether the surface starts from the image's iso-surface, near where it ends, and not from a
+// bubble around a coarse image. That takes about kBytes for each of the voxels at_surface, which
+// must be half of a limit at most. Of noise there is no end of them: on a CT of an aorta they are
+// 18 % of all, on seven other images 1 to 4 %. In small images they are many, too, but cost little.
+bool starts_at_iso(const VolumeView& volume, uint64_t at_surface, int64_t memory_limit,
+                   const plc_parameters& p) {
+  constexpr double kPart = 1.0 / 16, kFew = 1 << 14, kMany = 1 << 21, kBytes = 1200;
+  const double voxels = static_cast<double>(volume.dims[0]) * static_cast<double>(volume.dims[1]) *
+                        static_cast<double>(volume.dims[2]);
+  const double count = static_cast<double>(at_surface);
+  const bool fits = memory_limit == 0 || kBytes * count <= static_cast<double>(memory_limit) / 2;
+  return p.init == PLC_INIT_AUTO && is_adaptive(p) && p.late_bubbles != 0 && fits &&
+         count <= std::clamp(kPart * voxels, kFew, kMany);
+}
+
 Status check_mesh(const plc_parameters& p) {
   if (p.mesh != PLC_MESH_ADAPTIVE) return {};
   const auto refused = [](const std::string& why) {
@@ -101,33 +120,9 @@ Status check_parameters(const plc_parameters& p) {
   return {};
 }
 
-namespace {
-
-bool is_adaptive(const plc_parameters& p) {
-  if (p.mesh != PLC_MESH_AUTO) return p.mesh == PLC_MESH_ADAPTIVE;
-  return p.force == PLC_FORCE_ISO && p.spring == 0 && p.edge == 0;
-}
-
-// Whether the surface starts from the image's iso-surface, near where it ends, and not from a
-// bubble around a coarse image. That takes about kBytes for each of the voxels at_surface, which
-// must be half of a limit at most. Of noise there is no end of them: on a CT of an aorta they are
-// 18 % of all, on seven other images 1 to 4 %. In small images they are many, too, but cost little.
-bool starts_at_iso(const VolumeView& volume, uint64_t at_surface, int64_t memory_limit,
-                   const plc_parameters& p) {
-  constexpr double kPart = 1.0 / 16, kFew = 1 << 14, kMany = 1 << 21, kBytes = 1200;
-  const double voxels = static_cast<double>(volume.dims[0]) * static_cast<double>(volume.dims[1]) *
-                        static_cast<double>(volume.dims[2]);
-  const double count = static_cast<double>(at_surface);
-  const bool fits = memory_limit == 0 || kBytes * count <= static_cast<double>(memory_limit) / 2;
-  return p.init == PLC_INIT_AUTO && is_adaptive(p) && p.late_bubbles != 0 && fits &&
-         count <= std::clamp(kPart * voxels, kFew, kMany);
-}
-
-}  // namespace
-
 Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
                          const Executor& executor, int64_t memory_limit, plc_parameters& p,
-                         double& background) {
+                         DerivedWindow& window) {
   const bool above = p.inside_below == 0;
   if (range.low == range.high) {
     return {ErrorCode::kInvalidData,
@@ -142,10 +137,8 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
   // What is given need not be looked for; of the background only derived iso-values depend.
   const bool given =
       !std::isnan(p.window_low) && !std::isnan(p.window_high) && p.level_iso_count > 0;
-  const DerivedWindow window = std::isnan(p.iso) || given
-                                   ? DerivedWindow{{range.low, range.high}, range.low, 0}
-                                   : derive_window(volume, range, p.iso, above, executor);
-  background = window.background;
+  window = std::isnan(p.iso) || given ? DerivedWindow{{range.low, range.high}, range.low, 0}
+                                      : derive_window(volume, range, p.iso, above, executor);
   if (std::isnan(p.window_low)) p.window_low = window.low;
   if (std::isnan(p.window_high)) p.window_high = window.high;
   const std::string window_text =

@@ -4,6 +4,7 @@
 #include "engine/recover/recovery.h"
 #include "pyramid/pyramid.h"
 #include "pyramid/status.h"
+#include "pyramid/window.h"
 
 namespace plc {
 
@@ -12,11 +13,12 @@ namespace plc {
 Status check_parameters(const plc_parameters& parameters);
 
 // Fills in what is NAN or -1: window, pad value, level count. `range` is that of the image;
-// `background` is set to the typical value across the surface from the object (window.h). Errors:
-// kInvalidArgument, kInvalidData (constant or not finite image, iso outside the range).
+// `window` is set to what the image tells, where something is to be derived of that. memory_limit:
+// of the context, 0: none. Errors: kInvalidArgument, kInvalidData (constant or not finite image,
+// iso outside the range).
 Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
                          const Executor& executor, int64_t memory_limit, plc_parameters& parameters,
-                         double& background);
+                         DerivedWindow& window);
 
 // Image units to [0,1] of the window and back.
 inline double normalised(const plc_parameters& p, double value) {

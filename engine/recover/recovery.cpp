@@ -121,6 +121,7 @@ Status Recovery::start_level() {
     if (Status s = start_surface(spec_.start, level, delta_of(level_), schedule_, mesh_,
                                  record().operations, go_on);
         !s.ok()) {
+      // So that it can be started again.
       mesh_.clear();
       records_.pop_back();
       return s;

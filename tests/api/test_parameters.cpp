@@ -59,8 +59,8 @@ plc::Status derive(plc_parameters& p, const samples::Volume& volume = ball(),
                    int64_t memory_limit = 0) {
   const plc::VolumeView view = volume.view();
   const plc::VoxelRange range = plc::voxel_range(view, samples::kSerial);
-  double background = 0;
-  return plc::derive_parameters(view, range, samples::kSerial, memory_limit, p, background);
+  plc::DerivedWindow window;
+  return plc::derive_parameters(view, range, samples::kSerial, memory_limit, p, window);
 }
 
 std::string not_derived(const Change& change, ErrorCode code = ErrorCode::kInvalidArgument) {

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "tests/samples/sample_api.h"
+#include "tests/samples/sample_handles.h"
 
 namespace {
 
@@ -280,6 +281,55 @@ TEST_CASE("progress is told after every iteration and may cancel", "[pellicle]")
   CHECK(told.calls == 9);
   CHECK(surface == nullptr);
   CHECK(std::string(plc_context_message(context.get())) == "cancelled");
+}
+
+TEST_CASE("making the iso-surface to start from is told, and may be cancelled at any time",
+          "[pellicle]") {
+  const Context context = samples::make_context();
+  const plc_image image = samples::image_of(ball());
+  const plc_parameters p = samples::parameters(0.5, -1);
+  struct Told {
+    int starts = 0, iterations = 0, limit = 0;
+    double fraction = 0;
+  };
+  Told told;
+  plc_extras extras;
+  plc_extras_defaults(&extras);
+  extras.progress = [](const plc_progress* progress, void* user) {
+    auto& so_far = *static_cast<Told*>(user);
+    (progress->iteration == 0 ? so_far.starts : so_far.iterations) += 1;
+    CHECK(progress->level == 0);
+    CHECK(progress->fraction >= so_far.fraction);
+    CHECK(progress->fraction > 0);
+    if (progress->iteration == 0) CHECK((so_far.iterations == 0 && progress->vertices == 0));
+    so_far.fraction = progress->fraction;
+    return so_far.starts == so_far.limit ? 1 : 0;
+  };
+  extras.progress_user = &told;
+  plc_surface* surface = nullptr;
+  REQUIRE(plc_extract(context.get(), &image, &p, &extras, &surface) == PLC_OK);
+  const Surface made(surface);
+  CHECK(samples::parameters_of(made.get()).init == PLC_INIT_ISO);
+  CHECK(told.iterations == samples::level_of(made.get(), 0).iterations);
+  const int starts = told.starts;
+  CHECK(starts > 2);
+  plc_volume* volume = nullptr;
+  REQUIRE(plc_volume_create(context.get(), &image, PLC_COPY, &volume) == PLC_OK);
+  const samples::VolumeHandle given(volume);
+  plc_pyramid* images = nullptr;
+  REQUIRE(plc_pyramid_create(context.get(), volume, &p, &images) == PLC_OK);
+  const samples::PyramidHandle pyramid(images);
+  for (int limit = 1; limit <= starts; ++limit) {
+    told = {0, 0, limit, 0};
+    CHECK(plc_extract(context.get(), &image, &p, &extras, &surface) == PLC_CANCELLED);
+    CHECK(surface == nullptr);
+    told = {0, 0, limit, 0};
+    plc_run* run = nullptr;
+    CHECK(plc_run_create(context.get(), images, &p, &extras, &run) == PLC_CANCELLED);
+    CHECK(run == nullptr);
+    CHECK(told.starts == limit);
+    CHECK(told.iterations == 0);
+  }
 }
 
 TEST_CASE("a level tells how many vertices it has moved and checked", "[pellicle]") {

@@ -155,6 +155,8 @@ works "a start of which the file has less" 0 "$pellicle" extract blobs.nrrd --is
   -o out/k.ply --report out/k.json
 is "a start of which the file has less" "$(json out/k-590.json .parameters.init)" "surface of 600 before --keep"
 is "the first has none" "$(json out/k-600.json .parameters.init)" iso
+works "--init auto" 0 "$pellicle" extract blobs.nrrd --iso 600 --init auto --quiet -o out/a.ply --report out/a.json
+is "--init auto is the default" "$(json out/a.json .hash)" "$(json out/f-600.json .hash)"
 echo "pin 20 0 60 3" > pin.txt
 works "a start with places" 0 "$pellicle" extract blobs.nrrd --iso 600 --attach pin.txt --quiet -o out/p.ply \
   --report out/p.json

@@ -19,7 +19,7 @@ ExtractJob job_of(const ExtractOptions& options, const plc_parameters& parameter
                  named(options.report, name),
                  named(options.trace, name),
                  false};
-  // A bubble comes by the places; on its way through the levels that is fast.
+  // What the engine would start from, too, but on the full image alone.
   if (!options.attach.empty() && parameters.init == PLC_INIT_AUTO) {
     job.parameters.init = PLC_INIT_BUBBLE;
   }

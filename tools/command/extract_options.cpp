@@ -266,10 +266,9 @@ class Declarations {
     text(
         "--init", "KIND", init_text(options_),
         "What the surface starts from: auto, iso on the full image for an adaptive mesh where "
-        "noise "
-        "does not make that too large, else bubble; bubble, one around the object; "
-        "bubbles=NX,NY,NZ, a grid of "
-        "them over the image, each count 1 .. 256; seeds=X,Y,Z,R;..., spheres (centres in "
+        "noise does not make that too large, else bubble; bubble, one around the object; "
+        "bubbles=NX,NY,NZ, a grid of them over the image, each count 1 .. 256; seeds=X,Y,Z,R;..., "
+        "spheres (centres in "
         "--space and in the image, R in mm); iso, the iso-surface of the coarsest image; "
         "mask=FILE, the surface of the voxels "
         "of a volume that are not 0; mesh=FILE, a closed oriented mesh, in the space that its file "

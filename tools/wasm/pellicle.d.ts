@@ -2,13 +2,13 @@
 
 export type Voxels = Uint8Array | Uint8ClampedArray | Int16Array | Uint16Array | Int32Array | Float32Array;
 
-/** What a run tells after every iteration. */
+/** What a run tells after every iteration, and now and then before the first. */
 export interface Progress {
   /** Of the image in which the mesh evolves; counts down to 0. */
   level: number;
   /** Levels above the full image. */
   levels: number;
-  /** Of this level, from 1. */
+  /** Of this level, from 1; 0, without vertices, before the first. */
   iteration: number;
   vertices: number;
   /** An estimate of what is done, 0 .. 1, never falling. */

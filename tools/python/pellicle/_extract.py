@@ -90,7 +90,8 @@ def extract(
         None. 1 is the pull of `iso` with attraction 1 on a vertex whose value is a whole window
         away from it. Called four times per iteration.
     progress : callable, optional
-        ``progress(p: Progress)`` after every iteration. What it returns is not looked at; to stop,
+        ``progress(p: Progress)`` after every iteration, and now and then before the first, which
+        is then iteration 0. What it returns is not looked at; to stop,
         it raises: `Cancelled`, or any other exception, which then comes out of this call.
     level : callable, optional
         ``level(report: LevelReport, surface: Surface)`` at the end of every level that holds a

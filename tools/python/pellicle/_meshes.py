@@ -228,5 +228,4 @@ def round_mesh(mesh: MeshLike, *, context: Context | None = None) -> npt.NDArray
     InvalidData
         Where the mesh is not valid, or too small beside its distance from the origin for float32.
     """
-    vertices, _ = _pellicle.round_mesh(core_of(context), arrays_of(mesh))
-    return vertices
+    return _pellicle.round_mesh(core_of(context), arrays_of(mesh))

@@ -49,9 +49,10 @@ class Parameters:
     reduction : float
         Of the size from level to level, 1 < reduction <= 2.
     init : {"bubble", "bubbles", "seeds", "iso", "mask", "mesh", "auto"}
-        What the surface starts from (3.6); auto: the iso-surface of the full image, with 0 levels,
-        for an adaptive mesh where noise does not make that too large, else a bubble. `seeds=`, `mask=`, `mesh=` and `bubbles=` imply theirs
-        where `init` is not given.
+        What the surface starts from (3.6). `seeds=`, `mask=`, `mesh=` and `bubbles=` imply theirs
+        where `init` is not given. auto: the iso-surface of the full image, with 0 levels, for an
+        adaptive mesh where noise does not make that too large, without attachments and pins; else
+        a bubble.
     bubbles : tuple of int
         How many bubbles along x, y, z, each 1 .. 256.
     mesh : {"uniform", "adaptive", "auto"}

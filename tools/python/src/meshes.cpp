@@ -124,16 +124,15 @@ std::tuple<Values, Indices, py::dict> simplify(Context& context, const MeshArray
           Indices({record.faces, int64_t{3}}, abc.data()), dict_of(record)};
 }
 
-std::tuple<py::array_t<float>, int64_t> round_mesh(Context& context, const MeshArrays& mesh) {
+py::array_t<float> round_mesh(Context& context, const MeshArrays& mesh) {
   const MeshView view(mesh);
   py::array_t<float> rounded({view.vertex_count, int64_t{3}});
   float* xyz = rounded.mutable_data();
-  int64_t moved = 0;
   context.call([&](plc_context* handle) {
     return plc_mesh_round(handle, view.xyz, view.vertex_count, view.abc, view.face_count, xyz,
-                          &moved);
+                          nullptr);
   });
-  return {rounded, moved};
+  return rounded;
 }
 
 }  // namespace
