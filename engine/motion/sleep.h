@@ -58,6 +58,7 @@ class Sleep {
   void wake_all() { calm_.fill(0); }
   // The surface sets out on a way of at most so many iterations, on which turns do not count.
   void travel(int most) { travel_.start(most); }
+  bool travelling() const { return travel_.going(); }
   const VertexBytes& calm() const { return calm_; }
   const VertexBytes& drift() const { return drift_; }
   // Ids have changed: everything that sleeps counts as fallen asleep just now.

@@ -27,6 +27,7 @@ class Evolution {
   void restart();
   // The surface sets out on a way of at most so many iterations (motion/travel.h).
   void travel(int most) { sleep_.travel(most); }
+  bool travelling() const { return sleep_.travelling(); }
   // Moves the vertices, takes back what would make the surface meet itself, resolves the
   // constraints of the vertices that are due (of all: check_all). Fails where the user's force
   // does.

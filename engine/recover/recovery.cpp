@@ -69,7 +69,7 @@ Status Recovery::step() {
       return iterate();
     case Phase::kSearch: {
       phase_ = Phase::kIterate;
-      round_.searched = true;
+      (searched_early() ? round_.searched_early : round_.searched) = true;
       bool added = false;
       return search(added);
     }
@@ -238,6 +238,7 @@ Status Recovery::iterate() {
   r.converged = confirmed(round_.calm);
   estimate_progress();
   renumber_if_scattered();
+  if (searched_early()) phase_ = Phase::kSearch;
   if (r.converged || iterations_left() == 0) phase_ = Phase::kCheck;
   return report_progress();
 }
@@ -301,6 +302,16 @@ Status Recovery::verify() {
 bool Recovery::searched_again() const {
   return level_ == 0 && !round_.searched && round_.number < kLateRounds &&
          late_iterations_ < spec_.max_iterations;
+}
+
+bool Recovery::searched_early() const {
+  return mesh_.sizing != nullptr && searched_again() && round_.number == 0 &&
+         !round_.searched_early && round_.iteration >= kEarlySearch && near_rest() &&
+         !evolution_.travelling();
+}
+
+bool Recovery::near_rest() const {
+  return energy_ <= kLateEnergy * spec_.epsilon;
 }
 
 // Where something was added, another round begins.
@@ -387,7 +398,7 @@ bool Recovery::confirmed(int calm) {
 // where it is folded; `added` becomes whether there was anything.
 Status Recovery::add_late_bubbles(bool& added) {
   added = false;
-  const bool at_rest = mesh_.vertex_count() == 0 || energy_ <= kLateEnergy * spec_.epsilon;
+  const bool at_rest = mesh_.vertex_count() == 0 || near_rest();
   const std::optional<float> iso = iso_of(level_);
   if (!spec_.late_bubbles || !iso || !at_rest) return {};
   const double start = now();

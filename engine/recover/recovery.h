@@ -136,7 +136,8 @@ class Recovery {
   enum class Phase : uint8_t { kStart, kIterate, kSearch, kCheck, kVerify, kRoundEnd, kVerdict };
   // Vertices that sleep do not move, whether they are at rest or not. So all are woken before a
   // level ends, and it has converged when they stay calm. An adaptive mesh is searched for what it
-  // has missed before that: what gets late bubbles goes on anyway.
+  // has missed before that: what gets late bubbles goes on anyway. And in its first round already
+  // when it is near rest, so that what it gets comes to rest along with the others.
   struct Confirmation {
     int since = 0;       // iteration in which all were woken; 0: they were not
     int not_before = 0;  // iteration in which they may be woken again
@@ -146,7 +147,7 @@ class Recovery {
   struct Round {
     int number = 0;
     bool late = false;
-    bool searched = false;  // for missed places, before it was confirmed
+    bool searched_early = false, searched = false;  // for missed places, before it was confirmed
     int iteration = 0;
     int calm = 0;  // iterations in a row
     Confirmation confirmation;
@@ -173,6 +174,8 @@ class Recovery {
   void check();
   Status verify();
   bool searched_again() const;
+  bool searched_early() const;
+  bool near_rest() const;
   Status search(bool& added);
   Status end_round();
   Status ask_verdict();

@@ -41,6 +41,7 @@ void visit_round(Round& r, const Visit& visit) {
     visit(*n);
   }
   visit(r.late);
+  visit(r.searched_early);
   visit(r.searched);
   visit(r.most_vertices);
 }

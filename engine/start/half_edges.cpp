@@ -65,11 +65,4 @@ void HalfEdges::remove_face(uint32_t h) {
   for (uint32_t k = 0; k < 3; ++k) corner_[f + k] = kNone;
 }
 
-void HalfEdges::restore_face(const HalfEdges& other, size_t f) {
-  for (size_t h = 3 * f; h < 3 * f + 3; ++h) {
-    corner_[h] = other.corner_[h];
-    twin_[h] = other.twin_[h];
-  }
-}
-
 }  // namespace plc

@@ -56,9 +56,16 @@ class HalfEdges {
   // Merges to(h) into from(h). Their ends have two neighbours in common, of more than three
   // neighbours each.
   void contract(uint32_t h);
-  // A face and a vertex as they are in another state of the same mesh.
-  void restore_face(const HalfEdges& other, size_t f);
-  void restore_vertex(const HalfEdges& other, uint32_t v) { out_[v] = other.out_[v]; }
+  // What contractions change, to be kept and put back.
+  struct HalfEdge {
+    uint32_t id, from, twin;
+  };
+  HalfEdge half_edge(uint32_t h) const { return {h, corner_[h], twin_[h]}; }
+  void put_back(const HalfEdge& h) {
+    corner_[h.id] = h.from;
+    twin_[h.id] = h.twin;
+  }
+  void put_back(uint32_t v, uint32_t out) { out_[v] = out; }
 
  private:
   void join(uint32_t g, uint32_t h) {

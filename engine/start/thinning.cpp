@@ -8,6 +8,11 @@
 
 #include "engine/base/blocks.h"
 #include "engine/base/constants.h"
+#include "engine/base/marks.h"
+#include "engine/base/spares.h"
+#include "engine/exact/face_tree.h"
+#include "engine/exact/triangle_intersection.h"
+#include "engine/exact/vertex_star.h"
 #include "engine/guard/self_meeting.h"
 #include "engine/resolve/refinement.h"
 #include "engine/start/half_edges.h"
@@ -24,8 +29,10 @@ constexpr float kReaches[] = {0.63F, 1.05F};
 constexpr uint8_t kSteps = std::size(kReaches);
 // What meets stays finer, and is merged anew, so many times; then its block stays as it was.
 constexpr int kTries = 8;
-// Side of a block, in delta. What lies at its border is thinned out by one thread.
+// Side of a block, in delta, and by how much of it the grid of each stage is moved: what is at the
+// border of a block in one of them is within a block in another, but for some points.
 constexpr float kSide = 24;
+constexpr float kShifts[] = {0, 0.5F, 0.25F};
 constexpr size_t kVertices = 4096;  // of a task
 
 struct Place {
@@ -33,14 +40,11 @@ struct Place {
   float size;
 };
 
-// The vertices of a surface by the blocks of a grid in which they lie.
+// The vertices of a surface that are still there by the blocks of a grid in which they lie.
 class Grid {
  public:
-  // Of a single block.
-  explicit Grid(size_t vertices) : block_(vertices, 0), begin_{0, vertices}, ids_(vertices) {
-    std::iota(ids_.begin(), ids_.end(), 0U);
-  }
-  Grid(const Vector<Place>& places, float side) : block_(places.size()), ids_(places.size()) {
+  Grid(const Vector<Place>& places, const HalfEdges& surface, float side, float shift)
+      : block_(places.size()) {
     std::array<float, 3> low{}, high{};
     for (size_t v = 0; v < places.size(); ++v) {
       const float xyz[3] = {places[v].at.x, places[v].at.y, places[v].at.z};
@@ -50,18 +54,21 @@ class Grid {
       }
     }
     const auto along = [&](size_t a, float x) {
-      return static_cast<uint32_t>((x - low[a]) / side);
+      return static_cast<uint32_t>((x - low[a]) / side + shift);
     };
     const uint32_t columns = along(0, high[0]) + 1, rows = along(1, high[1]) + 1;
     begin_.assign(size_t{columns} * rows * (along(2, high[2]) + 1) + 1, 0);
-    for (size_t v = 0; v < places.size(); ++v) {
+    for (uint32_t v = 0; v < block_.size(); ++v) {
       const Vec3 p = places[v].at;
       block_[v] = (along(2, p.z) * rows + along(1, p.y)) * columns + along(0, p.x);
-      ++begin_[block_[v] + size_t{1}];
+      if (surface.alive(v)) ++begin_[block_[v] + size_t{1}];
     }
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    ids_.resize(begin_.back());
     Vector<size_t> end = begin_;
-    for (uint32_t v = 0; v < block_.size(); ++v) ids_[end[block_[v]]++] = v;
+    for (uint32_t v = 0; v < block_.size(); ++v) {
+      if (surface.alive(v)) ids_[end[block_[v]]++] = v;
+    }
   }
   size_t blocks() const { return begin_.size() - 1; }
   uint32_t block(uint32_t v) const { return block_[v]; }
@@ -75,57 +82,35 @@ class Grid {
   Vector<uint32_t> ids_;    // ascending in each block
 };
 
-// Merges vertices within the blocks of a grid.
+// Merges vertices, in stages.
 class Thinning {
  public:
   // steps: of each vertex, how many it takes part in.
-  Thinning(const MeshArraysOf<float>& surface, const Vector<Place>& places, const Grid& grid,
-           Vector<uint8_t>& steps, uint32_t most_neighbors, const Executor& executor)
+  Thinning(const MeshArraysOf<float>& surface, const Vector<Place>& places, Vector<uint8_t>& steps,
+           uint32_t most_neighbors, const Executor& executor)
       : places_(places),
-        grid_(grid),
         steps_(steps),
         most_neighbors_(most_neighbors),
         executor_(executor),
-        before_(surface, executor),
-        mesh_(before_),
-        at_border_(places.size(), 0),
+        mesh_(surface, executor),
         into_(places.size()) {
     std::iota(into_.begin(), into_.end(), 0U);
-    for (size_t f = 0; f < mesh_.face_slots(); ++f) {
-      const uint32_t* abc = mesh_.face(f);
-      const uint32_t block = grid_.block(abc[0]);
-      if (grid_.block(abc[1]) == block && grid_.block(abc[2]) == block) continue;
-      for (size_t k = 0; k < 3; ++k) at_border_[abc[k]] = 1;
-    }
   }
 
-  // The blocks that are marked, all of whose vertices are as they were.
-  void run(const Vector<uint8_t>& marked) {
-    executor_.run(grid_.blocks(), [&](size_t block) {
-      if (marked[block] == 0) return;
-      Ring ring;
-      for (uint8_t step = 0; step < kSteps; ++step) {
-        for (const uint32_t v : grid_.vertices(block)) {
-          while (merges(v, step) && merge_one(v, step, ring)) {
-          }
-        }
-      }
-    });
-  }
-  // Makes the marked blocks what they were.
-  void restore(const Vector<uint8_t>& marked) {
+  // Those within the blocks of a grid, all blocks at once. No two faces of which one has a corner
+  // within a block meet afterwards, if they did not before.
+  void run(const Grid& grid) {
+    grid_ = &grid;
+    flags_.assign(places_.size(), 0);
     run_blocks(executor_, mesh_.face_slots(), kVertices, [&](size_t, size_t begin, size_t end) {
       for (size_t f = begin; f < end; ++f) {
-        // Faces between blocks have not changed.
-        if (marked[grid_.block(before_.face(f)[0])] != 0) mesh_.restore_face(before_, f);
+        if (mesh_.face_alive(f)) mark_border(mesh_.face(f));
       }
     });
-    run_blocks(executor_, into_.size(), kVertices, [&](size_t, size_t begin, size_t end) {
-      for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
-        if (marked[grid_.block(v)] == 0) continue;
-        mesh_.restore_vertex(before_, v);
-        into_[v] = v;
-      }
+    executor_.run(grid.blocks(), [&](size_t block) {
+      if (grid.vertices(block).empty()) return;
+      const Spares<Scratch>::Lent scratch = scratches_.lend();
+      thin_out(static_cast<uint32_t>(block), *scratch);
     });
   }
   // What v was merged into, or itself.
@@ -136,10 +121,84 @@ class Thinning {
   const HalfEdges& mesh() const { return mesh_; }
 
  private:
-  using Ring = Vector<uint32_t>;  // neighbours
+  // Of a vertex in a stage.
+  static constexpr uint8_t kAtBorder = 1;  // of its block, which it has not to itself
+  static constexpr uint8_t kGrown = 2;     // something was merged into it
+  static constexpr uint8_t kEmbedded = 4;  // the faces around it do not meet each other
+  using Ring = Vector<uint32_t>;           // neighbours
+  struct Face {
+    std::array<uint32_t, 3> corner;
+    bool changed;
+    std::array<bool, 3> embedded;  // whether that is certain of the corner
+  };
+  // What a task needs for a block.
+  struct Scratch {
+    Ring ring;
+    Vector<HalfEdges::HalfEdge> half_edges;  // as they were, of all faces within the block
+    Vector<uint32_t> out;                    // ... of its vertices
+    Vector<Face> faces;
+    Vector<double> xyz;
+    Vector<uint32_t> abc, ids;
+    FaceTree tree;
+    Vector<uint32_t> meeting;  // vertices
+  };
 
+  void mark_border(const uint32_t* abc) {
+    const uint32_t block = grid_->block(abc[0]);
+    if (grid_->block(abc[1]) == block && grid_->block(abc[2]) == block) return;
+    for (size_t k = 0; k < 3; ++k) {
+      if ((read_mark(flags_[abc[k]]) & kAtBorder) == 0) set_mark(flags_[abc[k]], kAtBorder);
+    }
+  }
+  bool has(uint32_t v, uint8_t flag) const { return (flags_[v] & flag) != 0; }
+
+  // Of two faces that meet one has changed: of what was merged into its corners something took part
+  // in a step, and does so no more. So this ends.
+  void thin_out(uint32_t block, Scratch& s) {
+    save(block, s);
+    for (int i = 0; merge(block, s.ring); ++i) {
+      list_faces(block, s);
+      find_meeting(s);
+      if (s.meeting.empty()) return;
+      for (const uint32_t v : grid_->vertices(block)) {
+        const bool meets = std::binary_search(s.meeting.begin(), s.meeting.end(), left_of(v));
+        if (meets && steps_[v] > 0) --steps_[v];
+        if (i >= kTries) steps_[v] = 0;
+      }
+      restore(block, s);
+    }
+  }
+  void save(uint32_t block, Scratch& s) const {
+    s.half_edges.clear();
+    s.out.clear();
+    for (const uint32_t v : grid_->vertices(block)) {
+      s.out.push_back(mesh_.out(v));
+      mesh_.visit_ring(v, [&](uint32_t h) {
+        // Others have not to do with this block alone, and do not change.
+        if (grid_->block(mesh_.to(h)) == block) s.half_edges.push_back(mesh_.half_edge(h));
+      });
+    }
+  }
+  void restore(uint32_t block, const Scratch& s) {
+    for (const HalfEdges::HalfEdge& h : s.half_edges) mesh_.put_back(h);
+    size_t i = 0;
+    for (const uint32_t v : grid_->vertices(block)) {
+      mesh_.put_back(v, s.out[i++]);
+      into_[v] = v;
+      flags_[v] &= kAtBorder;
+    }
+  }
+  bool merge(uint32_t block, Ring& ring) {
+    bool any = false;
+    for (uint8_t step = 0; step < kSteps; ++step) {
+      for (const uint32_t v : grid_->vertices(block)) {
+        while (merges(v, step) && merge_one(v, step, ring)) any = true;
+      }
+    }
+    return any;
+  }
   bool merges(uint32_t v, uint8_t step) const {
-    return mesh_.alive(v) && at_border_[v] == 0 && steps_[v] > step;
+    return mesh_.alive(v) && !has(v, kAtBorder) && steps_[v] > step;
   }
   // The neighbours of v, that of mesh_.out(v) in front.
   void list_ring(uint32_t v, Ring& ring) const {
@@ -155,6 +214,7 @@ class Thinning {
       if (merges(w, step) && squared(places_[w].at - places_[v].at) < reach * reach &&
           may_contract(h, ring) && keeps_shape(h)) {
         into_[w] = v;
+        flags_[v] |= kGrown;
         mesh_.contract(h);
         return true;
       }
@@ -203,15 +263,88 @@ class Thinning {
     }
   }
 
+  // All faces with a corner in the block.
+  void list_faces(uint32_t block, Scratch& s) {
+    for (const uint32_t v : grid_->vertices(block)) {
+      if (mesh_.alive(v) && star_is_embedded(v)) flags_[v] |= kEmbedded;
+    }
+    s.faces.clear();
+    const auto within = [&](uint32_t v) { return grid_->block(v) == block; };
+    for (const uint32_t v : grid_->vertices(block)) {
+      if (!mesh_.alive(v)) continue;
+      mesh_.visit_ring(v, [&](uint32_t h) {
+        const std::array<uint32_t, 3> corner{v, mesh_.to(h), mesh_.from(HalfEdges::previous(h))};
+        Face face{corner, false, {}};
+        for (size_t k = 0; k < 3; ++k) {
+          if (!within(corner[k])) continue;
+          if (corner[k] < v) return;  // found from there
+          face.changed = face.changed || has(corner[k], kGrown);
+          face.embedded[k] = has(corner[k], kEmbedded);
+        }
+        s.faces.push_back(face);
+      });
+    }
+  }
+  bool star_is_embedded(uint32_t v) const {
+    Fan fan(places_[v].at);
+    mesh_.visit_ring(v, [&](uint32_t h) { fan.add(places_[mesh_.to(h)].at); });
+    return fan.is_embedded();
+  }
+  // Lists the corners of faces that meet, of which one has changed.
+  void find_meeting(Scratch& s) const {
+    s.meeting.clear();
+    s.xyz.clear();
+    for (const Face& face : s.faces) {
+      for (const uint32_t v : face.corner) {
+        const Vec3 p = places_[v].at;
+        s.xyz.insert(s.xyz.end(), {p.x, p.y, p.z});
+      }
+    }
+    s.abc.resize(3 * s.faces.size());
+    std::iota(s.abc.begin(), s.abc.end(), 0U);
+    s.ids.resize(s.faces.size());
+    std::iota(s.ids.begin(), s.ids.end(), 0U);
+    s.tree.build(s.xyz.data(), s.abc.data(), s.ids.data(), s.ids.size(), SerialExecutor());
+    for (size_t leaf = 0; leaf < s.tree.leaf_count(); ++leaf) {
+      s.tree.overlapping_pairs(leaf, [&](uint32_t f, uint32_t g) {
+        const Face &a = s.faces[f], &b = s.faces[g];
+        if ((a.changed || b.changed) && !share_embedded(a, b) &&
+            triangles_intersect(triangle(a), triangle(b))) {
+          s.meeting.insert(s.meeting.end(), a.corner.begin(), a.corner.end());
+          s.meeting.insert(s.meeting.end(), b.corner.begin(), b.corner.end());
+        }
+      });
+    }
+    std::sort(s.meeting.begin(), s.meeting.end());
+  }
+  static bool share_embedded(const Face& a, const Face& b) {
+    for (size_t k = 0; k < 3; ++k) {
+      if (a.embedded[k] &&
+          std::find(b.corner.begin(), b.corner.end(), a.corner[k]) != b.corner.end()) {
+        return true;
+      }
+    }
+    return false;
+  }
+  Triangle triangle(const Face& face) const {
+    Triangle t;
+    for (size_t k = 0; k < 3; ++k) {
+      const Vec3 p = places_[face.corner[k]].at;
+      t.corner[k] = {p.x, p.y, p.z};
+      t.vertex[k] = face.corner[k];
+    }
+    return t;
+  }
+
   const Vector<Place>& places_;
-  const Grid& grid_;
-  const Vector<uint8_t>& steps_;
+  const Grid* grid_ = nullptr;  // of the stage
+  Vector<uint8_t>& steps_;
   uint32_t most_neighbors_;
   const Executor& executor_;
-  const HalfEdges before_;
   HalfEdges mesh_;
-  Vector<uint8_t> at_border_;  // of vertices with a neighbour in another block
   Vector<uint32_t> into_;
+  Vector<uint8_t> flags_;  // of vertices
+  Spares<Scratch> scratches_;
 };
 
 // Makes the mesh what is left of the surface; ids: of its vertices, what they were there.
@@ -254,63 +387,35 @@ Vector<Place> places_of(const MeshArraysOf<float>& surface, const Mesh& mesh,
   return places;
 }
 
-// steps: of the surface's vertices, and then of the mesh's.
-Status thin_out_blocks(const MeshArraysOf<float>& surface, const Vector<Place>& places,
-                       const Grid& grid, const Schedule& schedule, const GoOn& go_on,
-                       Vector<uint8_t>& steps, Mesh& mesh) {
-  Thinning thinning(surface, places, grid, steps, mesh.most_neighbors, schedule);
-  Vector<uint8_t> marked(grid.blocks(), 1);
-  Vector<uint32_t> ids;
-  for (int i = 0;; ++i) {
-    thinning.run(marked);
-    fill(mesh, thinning.mesh(), places, schedule, ids);
-    const auto meeting = meeting_faces(mesh, schedule);
-    if (Status s = ask(go_on); !s.ok()) return s;
-    if (meeting.empty()) break;
-    // One of two faces that meet is not what it was: of what was merged into its corners something
-    // took part in a step, and does so no more. So this ends.
-    Vector<uint8_t> meets(surface.vertex_count, 0);
-    for (const auto& face : meeting) {
-      for (const uint32_t v : face) meets[ids[v]] = 1;
-    }
-    std::fill(marked.begin(), marked.end(), uint8_t{0});
-    for (uint32_t v = 0; v < surface.vertex_count; ++v) {
-      if (meets[thinning.left_of(v)] == 0) continue;
-      marked[grid.block(v)] = 1;
-      if (steps[v] > 0) --steps[v];
-    }
-    for (uint32_t v = 0; v < surface.vertex_count && i >= kTries; ++v) {
-      if (marked[grid.block(v)] != 0) steps[v] = 0;
-    }
-    thinning.restore(marked);
-  }
-  Vector<uint8_t> left(ids.size());
-  for (size_t v = 0; v < ids.size(); ++v) left[v] = steps[ids[v]];
-  steps.swap(left);
-  return {};
-}
-
 }  // namespace
 
 Status thin_out(const MeshArraysOf<float>& surface, const Schedule& schedule, const GoOn& go_on,
                 Mesh& mesh) {
   Vector<uint8_t> steps(surface.vertex_count, kSteps);
-  Vector<Place> places = places_of(surface, mesh, schedule);
-  const Grid grid(places, kSide * static_cast<float>(mesh.delta));
-  Status s = thin_out_blocks(surface, places, grid, schedule, go_on, steps, mesh);
-  if (s.ok() && grid.blocks() > 1) {
-    Vector<float> xyz;
-    for (uint32_t v = 0; v < mesh.slots(); ++v) {
-      const Vec3 p = mesh.at(v);
-      xyz.insert(xyz.end(), {p.x, p.y, p.z});
+  const Vector<Place> places = places_of(surface, mesh, schedule);
+  for (int i = 0;; ++i) {
+    Thinning thinning(surface, places, steps, mesh.most_neighbors, schedule);
+    const float side = kSide * static_cast<float>(mesh.delta);
+    for (const float shift : kShifts) {
+      thinning.run(Grid(places, thinning.mesh(), side, shift));
+      if (Status s = ask(go_on); !s.ok()) return s;
     }
-    const Vector<uint32_t> abc = mesh.faces();
-    const auto rest = arrays_of(xyz, abc);
-    places = places_of(rest, mesh, schedule);
-    s = thin_out_blocks(rest, places, Grid(places.size()), schedule, go_on, steps, mesh);
+    Vector<uint32_t> ids;
+    fill(mesh, thinning.mesh(), places, schedule, ids);
+    // Some lie in different blocks in every stage. As in a block one of two takes part in less.
+    Vector<uint8_t> meets(surface.vertex_count, 0);
+    const auto meeting = meeting_faces(mesh, schedule);
+    if (meeting.empty()) break;
+    for (const auto& face : meeting) {
+      for (const uint32_t v : face) meets[ids[v]] = 1;
+    }
+    for (uint32_t v = 0; v < surface.vertex_count; ++v) {
+      if (i >= kTries) steps[v] = 0;
+      if (meets[thinning.left_of(v)] != 0 && steps[v] > 0) --steps[v];
+    }
   }
   for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.resize(v);
-  return s;
+  return {};
 }
 
 }  // namespace plc

@@ -70,7 +70,7 @@ TEST_CASE("rings are counter-clockwise seen from outside", "[half_edges]") {
   }
 }
 
-TEST_CASE("a contraction takes two faces, and all is as before when they are restored",
+TEST_CASE("a contraction takes two faces, and all is as before when what it changed is put back",
           "[half_edges]") {
   const Soup soup = samples::torus(12, 9, 2, 0.7);
   const HalfEdges before = half_edges_of(soup);
@@ -86,8 +86,8 @@ TEST_CASE("a contraction takes two faces, and all is as before when they are res
     CHECK(check.oriented == 1);
     CHECK(check.measures.euler == 0);
     CHECK(check.measures.faces == static_cast<int64_t>(before.face_slots()) - 2);
-    for (size_t f = 0; f < mesh.face_slots(); ++f) mesh.restore_face(before, f);
-    for (uint32_t u = 0; u < mesh.vertex_slots(); ++u) mesh.restore_vertex(before, u);
+    for (uint32_t g = 0; g < 3 * mesh.face_slots(); ++g) mesh.put_back(before.half_edge(g));
+    for (uint32_t u = 0; u < mesh.vertex_slots(); ++u) mesh.put_back(u, before.out(u));
     check_links(mesh);
     CHECK(mesh.alive(w));
     CHECK(checked(soup, mesh).measures.faces == static_cast<int64_t>(before.face_slots()));
