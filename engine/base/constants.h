@@ -206,6 +206,8 @@ inline constexpr double kStableDecay = 2.5;
 // The energy is near 0 from rest, before anything has moved: a level runs at least this long, and
 // has converged when its energy was calm this many times in a row.
 inline constexpr int kMinIterations = 20;
+// ... but for rounds of an adaptive mesh after the first: most of it has moved before.
+inline constexpr int kMinLateIterations = 10;
 inline constexpr int kCalmIterations = 3;
 
 // ---- image ----------------------------------------------------------------------------------

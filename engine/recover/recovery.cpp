@@ -131,7 +131,7 @@ Status Recovery::start_level() {
   if (mesh_.vertex_count() == 0 && !mesh_.is_patch()) return leave_level();
   estimate_.start_level();
   if (fresh) estimate_.add_start(record().operations);
-  if (Status s = adapt(); !s.ok()) return s;
+  if (Status s = adapt(fresh && spec_.start.conforms()); !s.ok()) return s;
   if (Status s = build_gradient_image(); !s.ok()) return s;
   bool added = false;
   if (!fresh || mesh_.is_patch()) {
@@ -139,9 +139,8 @@ Status Recovery::start_level() {
   }
   // Other starts are near what they approach. What is frozen halfway on a coarse level goes on with
   // the next one.
-  const Init init = spec_.start.init;
-  const bool bubbles = init == Init::kBubble || init == Init::kBubbles || init == Init::kSeeds;
-  evolution_.travel(fresh && bubbles && level_ == 0 ? iterations_across() : 0);
+  const bool from_bubbles = fresh && !spec_.start.conforms();
+  evolution_.travel(from_bubbles && level_ == 0 ? iterations_across() : 0);
   late_iterations_ = 0;
   start_round(0, false);
   return {};
@@ -150,7 +149,7 @@ Status Recovery::start_level() {
 // Figure 12, first loop: refine until the density fits the image. With rho = sqrt 3 that is one
 // refinement per level; for other factors delta is set to fit afterwards, and creations and
 // deletions do the rest.
-Status Recovery::adapt() {
+Status Recovery::adapt(bool conformed) {
   const double start = now();
   const double target = delta_of(level_);
   // What of a patch is of the level above was refined when the patch was made (patch.h).
@@ -171,7 +170,7 @@ Status Recovery::adapt() {
   }
   evolution_.restart();
   evolution_.notify("refinement");
-  if (mesh_.sizing != nullptr || mesh_.is_patch()) {
+  if (mesh_.is_patch() || (mesh_.sizing != nullptr && !conformed)) {
     // Before anything moves, the edges are brought to the sizes of this level.
     measure_edges(mesh_);
     evolution_.check_all(record().seconds, record().operations);
@@ -380,11 +379,12 @@ bool Recovery::confirmed(int calm) {
     c = {0, iteration + kConfirmPause};
   }
   if (calm < kCalmIterations) return false;
+  const int least = mesh_.sizing != nullptr && round_.late ? kMinLateIterations : kMinIterations;
   if (c.since != 0) {
-    return iteration >= kMinIterations && iteration - c.since >= kConfirmIterations;
+    return iteration >= least && iteration - c.since >= kConfirmIterations;
   }
-  if (!evolution_.any_asleep()) return iteration >= kMinIterations;
-  if (iteration < std::max(c.not_before, kMinIterations - kConfirmIterations)) return false;
+  if (!evolution_.any_asleep()) return iteration >= least;
+  if (iteration < std::max(c.not_before, least - kConfirmIterations)) return false;
   if (mesh_.sizing != nullptr && searched_again()) {
     phase_ = Phase::kSearch;
     return false;

@@ -165,7 +165,7 @@ class Recovery {
   Status build_sizing();
   void lower_sizes();
   void resize_all();
-  Status adapt();
+  Status adapt(bool conformed);
   void start_round(int number, bool late);
   int iterations_left() const;  // of the round
   int iterations_across() const;

@@ -26,6 +26,8 @@ namespace {
 // The iteration never advances, so that pairs that an annular transformation has cut are never old
 // enough to be joined again: without forces that part them they would be cut and joined for ever.
 constexpr uint32_t kIteration = 1;
+// So many vertices to a transformation are hardly worth another pass.
+constexpr uint32_t kFewOperations = 256;
 
 // visit(u, v, squared length) for every edge, u < v.
 template <typename Visit>
@@ -161,7 +163,10 @@ Status settle(Mesh& mesh, const Executor& executor, Detection& detection, Resolu
     detection.search_near_all();
     resolution.run(kIteration, {}, counts);
     if (Status s = ask(go_on); !s.ok()) return s;
-    if (counts.transformations() == before) break;
+    const int64_t done = counts.transformations() - before;
+    // Sizes of an adaptive mesh are kept while it moves: a few edges more or less are for then.
+    const int64_t few = mesh.sizing == nullptr ? 0 : mesh.vertex_count() / kFewOperations;
+    if (done <= few) break;
   }
   return {};
 }
@@ -206,6 +211,9 @@ Status conform(Mesh& mesh, double delta, const Schedule& schedule, OperationCoun
     measure_edges(mesh);
     if (mesh.stretch > kRounding) return too_thin();
     mesh.stretch = 1;
+  } else {
+    mesh.stretch = kSizedStretch;
+    mesh.longest_edge = mesh.longest_sized_edge();
   }
   assert(broken_invariant(mesh).empty());
   if (const auto meeting = meeting_faces(mesh, schedule); !meeting.empty()) {

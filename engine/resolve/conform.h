@@ -21,7 +21,8 @@ inline constexpr int kConformPasses = 20;
 //   2. where all edges are far below delta: figure 9 for a delta that fits them, then for sqrt 3
 //      times that and so on. At the full delta at once the guards would look at the faces of a
 //      hundred vertices for every deletion;
-//   3. figure 9 over all vertices until a pass changes nothing.
+//   3. figure 9 over all vertices until a pass changes nothing, or in an adaptive mesh, whose sizes
+//      are kept while it moves, hardly anything.
 //
 // On entry the mesh is closed, oriented and embedded (mesh_import.h, iso_surface.h), and meets none
 // of its obstacles, which it does not on return either; delta > 0 in mesh units. On return it is

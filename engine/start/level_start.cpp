@@ -256,10 +256,6 @@ Status make_iso(const ImageObject& object, double delta, const Schedule& schedul
   return s.code() == ErrorCode::kInvalidData ? Status() : s;
 }
 
-bool needs_conforming(Init init) {
-  return init == Init::kIso || init == Init::kMask || init == Init::kMesh;
-}
-
 Status make_start(const StartSpec& spec, const LevelImage& level, double delta,
                   const Schedule& schedule, const GoOn& go_on, Mesh& mesh) {
   Extent box;
@@ -317,7 +313,7 @@ Status start_surface(const StartSpec& spec, const LevelImage& level, double delt
     if (Status s = check_obstacles(mesh, level); !s.ok()) return s;
   }
   // A patch is fitted to what it is a part of when its level starts.
-  if (!needs_conforming(spec.init) || mesh.is_patch()) return {};
+  if (!spec.conforms() || mesh.is_patch()) return {};
   Status s = conform(mesh, delta, schedule, counts, go_on);
   // Where nothing is left, a finer level may resolve it; but for a mesh that was given.
   const bool resolved = mesh.vertex_count() != 0 || spec.init == Init::kMesh;

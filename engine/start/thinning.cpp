@@ -31,7 +31,7 @@ constexpr uint8_t kSteps = std::size(kReaches);
 constexpr int kTries = 8;
 // Side of a block, in delta, and by how much of it the grid of each stage is moved: what is at the
 // border of a block in one of them is within a block in another, but for some points.
-constexpr float kSide = 24;
+constexpr float kSide = 32;
 constexpr float kShifts[] = {0, 0.5F, 0.25F};
 constexpr size_t kVertices = 4096;  // of a task
 
