@@ -184,8 +184,9 @@ inline constexpr float kThin = 1;
 // Cosine of 60 degrees, by which a face turns from the normal at its corner where the surface
 // bends.
 inline constexpr float kFoldCosine = 0.5F;
-// Places of so many voxels get a bubble in an adaptive mesh, however thin they are; smaller parts
-// and cavities are left out of the iso-surface that it starts from.
+// Places of so many voxels get a bubble in an adaptive mesh, however thin they are; parts of the
+// object of which so many are not joined by faces get none, and they and smaller cavities are left
+// out of the iso-surface that it starts from.
 inline constexpr int64_t kPlaceVoxels = 27;
 // What still moves is not missed yet: a surface is searched when its energy is below this many
 // epsilon.

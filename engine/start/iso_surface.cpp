@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -13,6 +14,7 @@
 #include "engine/base/blocks.h"
 #include "engine/base/disjoint_sets.h"
 #include "engine/mesh/face_rings.h"
+#include "engine/start/joined_voxels.h"
 #include "kernels/image_value.h"
 #include "pyramid/memory.h"
 
@@ -38,7 +40,7 @@ using Face = std::array<uint32_t, 3>;
 class Lattice {
  public:
   Lattice(const ImageObject& object, const LatticeValues& values)
-      : image_(object.image), values_(values), iso_(object.iso) {
+      : object_(object), image_(object.image), values_(values), iso_(object.iso) {
     for (size_t a = 0; a < 3; ++a) size_[a] = static_cast<size_t>(image_.dims[a]) + 2;
   }
 
@@ -77,6 +79,26 @@ class Lattice {
     return {p[0], p[1], p[2]};
   }
 
+  // Whether a voxel is there and inside.
+  bool has(const Voxel& v) const {
+    for (size_t a = 0; a < 3; ++a) {
+      if (v[a] < 0 || v[a] >= image_.dims[a]) return false;
+    }
+    return object_.has(values_.at(v[0], v[1], v[2]));
+  }
+  // That voxel of the two beside a crossing that is inside.
+  Voxel inside_of(const float* crossing) const {
+    Voxel low, high;
+    for (size_t a = 0; a < 3; ++a) {
+      // Where the edge leads along the axis the crossing is kIsoMargin from both at least.
+      const auto c = static_cast<double>(image_.scale[a]) * static_cast<double>(crossing[a]) +
+                     static_cast<double>(image_.offset[a]);
+      low[a] = static_cast<int32_t>(std::floor(c + kIsoMargin / 2));
+      high[a] = static_cast<int32_t>(std::ceil(c - kIsoMargin / 2));
+    }
+    return has(low) ? low : high;
+  }
+
  private:
   bool is_voxel(const std::array<size_t, 3>& p) const {
     return p[0] != 0 && p[1] != 0 && p[2] != 0 && p[0] + 1 != size_[0] && p[1] + 1 != size_[1] &&
@@ -84,6 +106,7 @@ class Lattice {
   }
   static int32_t voxel(size_t point) { return static_cast<int32_t>(point) - 1; }
 
+  const ImageObject& object_;
   const ImageView& image_;
   const LatticeValues& values_;
   float iso_;
@@ -346,7 +369,8 @@ class Builder {
     }
   }
 
-  // Faces of components that enclose fewer than `least` points, but for those that enclose most.
+  // Faces of components that enclose fewer than `least` points, and of parts of which no such
+  // number is joined by faces, but for those that enclose most.
   void leave_out(int64_t least) {
     DisjointSets sets(vertex_count());
     for (const auto& part : faces_) {
@@ -358,10 +382,30 @@ class Builder {
     Vector<int64_t> enclosed(vertex_count(), 0);  // by what stands for the component
     for (uint32_t v = 0; v < vertex_count(); ++v) enclosed[sets.find(v)] += points_[v];
     // Of a cavity it is negative.
-    for (int64_t& points : enclosed) points = std::abs(points);
-    least = std::min(least, *std::max_element(enclosed.begin(), enclosed.end()));
+    const auto by_size = [](int64_t a, int64_t b) { return std::abs(a) < std::abs(b); };
+    const int64_t most = std::abs(*std::max_element(enclosed.begin(), enclosed.end(), by_size));
+    least = std::min(least, most);
+    const auto is_large = [&](uint32_t v) { return std::abs(enclosed[sets.find(v)]) >= least; };
+    // The walls of cavities hang together with the surface around them: a row that enters the
+    // object at one of them leaves it at another.
+    DisjointSets solids = sets;
+    uint32_t entered = 0;
+    for (uint32_t v = 0; v < vertex_count(); ++v) {
+      if (points_[v] < 0) entered = v;
+      if (points_[v] > 0) solids.join(entered, v);
+    }
+    Vector<uint8_t> joined(vertex_count(), 0);  // by what stands for the solid
+    for (uint32_t v = 0; v < vertex_count(); ++v) {
+      uint8_t& of_solid = joined[solids.find(v)];
+      if (of_solid != 0 || !is_large(v)) continue;
+      of_solid = enclosed[sets.find(v)] == most ||
+                 is_joined(lattice_.inside_of(&xyz_[3 * size_t{v}]), static_cast<size_t>(least),
+                           [&](const Voxel& voxel) { return lattice_.has(voxel); });
+    }
     for (auto& part : faces_) {
-      const auto is_small = [&](const Face& f) { return enclosed[sets.find(f[0])] < least; };
+      const auto is_small = [&](const Face& f) {
+        return !is_large(f[0]) || joined[solids.find(f[0])] == 0;
+      };
       part.erase(std::remove_if(part.begin(), part.end(), is_small), part.end());
     }
   }

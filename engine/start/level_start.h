@@ -31,9 +31,7 @@ struct Seed {
 
 struct StartSpec {
   // Whether what it starts from is brought to the sizes of the level (conform.h); but for a patch.
-  bool conforms() const {
-    return init == Init::kIso || init == Init::kMask || init == Init::kMesh;
-  }
+  bool conforms() const { return init == Init::kIso || init == Init::kMask || init == Init::kMesh; }
 
   Init init = Init::kBubble;
   std::array<int, 3> bubbles{1, 1, 1};

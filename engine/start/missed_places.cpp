@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/constants.h"
+#include "engine/start/joined_voxels.h"
 #include "engine/start/thickness.h"
 #include "kernels/image_value.h"
 #include "pyramid/memory.h"
@@ -71,6 +72,7 @@ class Disagreement {
 struct Place {
   bool holds = false;  // a ball
   bool tried = false;
+  bool joined = false;  // a voxel of it to kPlaceVoxels of the object
   int64_t voxels = 0;
 };
 
@@ -135,9 +137,13 @@ class Search {
     }
   }
 
-  // The place of the seed, taken out of `left`.
-  Place examine(const Voxel& seed, const VoxelSet& kind, const VoxelSet& tried, VoxelSet& left) {
+  // The place of the seed, taken out of `left`. joins: whether `joined` is asked for.
+  Place examine(const Voxel& seed, const VoxelSet& kind, const VoxelSet& tried, bool joins,
+                VoxelSet& left) {
     Place place;
+    const auto is_object = [&](const Voxel& v) {
+      return within(v) && object_.has(image_value(image_, v[0], v[1], v[2]));
+    };
     left.erase(seed);
     flood(
         seed,
@@ -145,6 +151,7 @@ class Search {
           ++place.voxels;
           place.tried = place.tried || tried.has(v);
           place.holds = place.holds || free(v, kind, around_) || free(v, kind, between_);
+          place.joined = place.joined || (joins && is_joined(v, kPlaceVoxels, is_object));
         },
         [&](const Voxel& v) {
           const bool found = left.has(v);
@@ -377,9 +384,10 @@ MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object,
     places.voxels[k] = VoxelSet(image.dims);
     VoxelSet left(missed[k]);
     left.visit([&](const Voxel& seed) {
-      const Place place = search.examine(seed, missed[k], tried, left);
+      const bool crumbs = mesh.sizing == nullptr || k != static_cast<size_t>(Missed::kPart);
+      const Place place = search.examine(seed, missed[k], tried, !crumbs, left);
       const bool thin = mesh.sizing != nullptr && place.voxels >= kPlaceVoxels;
-      if (!(place.holds || thin) || place.tried) return;
+      if (!(place.holds || thin) || place.tried || !(crumbs || place.joined)) return;
       if (search.keep(seed, missed[k], limits.thinnest, tried, places.voxels[k], places.low[k],
                       places.high[k])) {
         ++places.count[k];

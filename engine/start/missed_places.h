@@ -32,11 +32,14 @@ struct PlaceLimits {
 
 // Places are sets of voxels connected by faces, edges or corners: of the object, outside the
 // surface - or not of it, and inside - and none within `clearance` of a vertex or, where the mesh
-// is adaptive, of a face. Those that hold no ball of `radius`, where the mesh is adaptive nor
-// kPlaceVoxels voxels, and those with a voxel that `tried` holds, are left out; the others are put
-// into it, which is of the image's voxels or of none yet. Of a place those voxels get a bubble
-// where the image is on the same side of iso for `thinnest` along each axis, and those beside them;
-// a place without any gets none. The same for any executor.
+// is adaptive, of a face. Left out are those that hold no ball of `radius`, where the mesh is
+// adaptive nor kPlaceVoxels voxels, and those with a voxel that `tried` holds; and where the mesh
+// is adaptive those in parts of the object of which no kPlaceVoxels voxels are joined by faces
+// (joined_voxels.h). The others are put into `tried`, which is of the image's voxels or of none
+// yet. Of a place those voxels get a bubble where the image is on the same side of iso for
+// `thinnest` along each axis, and those beside them; a place without any gets none. The same for
+// any executor.
+//
 // room: of a patch, where all of its faces are and where alone is looked; of others the image.
 MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object,
                                 const PlaceLimits& limits, const Executor& executor,

@@ -248,3 +248,51 @@ TEST_CASE("parts and cavities of too few voxels are left out, but for the larges
   CHECK(components(125) == 1);
   CHECK(components(1000) == 1);
 }
+
+TEST_CASE("parts whose voxels hang together by edges alone are left out, with their cavities",
+          "[iso_surface]") {
+  // Pairs of voxels along a diagonal, 36 in all; and a ball, the largest.
+  Volume v = samples::sphere_potential(constant({40, 40, 40}, 0), 0.2);
+  const auto set = [&](size_t x, size_t y, size_t z, float value) {
+    v.values[(z * 40 + y) * 40 + x] = value;
+  };
+  const auto components = [&](int64_t least) {
+    const plc::ImageView view = view_of(v);
+    const plc::ImageObject object{view, 0.5F, true};
+    plc::Crossings crossings;
+    REQUIRE(plc::iso_crossings(object, plc::values_of(object), least, samples::kSerial, crossings)
+                .ok());
+    const std::vector<double> xyz(crossings.xyz.begin(), crossings.xyz.end());
+    return plc::surface_measures(plc::arrays_of(xyz, crossings.abc), samples::kSerial).components;
+  };
+  CHECK(components(27) == 1);
+  for (size_t i = 0; i < 18; ++i) {
+    for (const size_t z : {2U, 3U}) set(2 + i, 2 + i, z, 1);
+  }
+  CHECK(components(0) == 2);
+  CHECK(components(27) == 1);
+  // With 27 voxels at its end it is a part.
+  for (size_t x = 20; x < 38; ++x) set(x, 19, 3, 1);
+  CHECK(components(27) == 1);
+  for (size_t x = 20; x < 38; ++x) set(x, 19, 2, 1);
+  CHECK(components(27) == 2);
+  // The ball is of a chequered shell, no two of whose voxels are joined: it goes with its cavity,
+  // as the part is the larger one.
+  Volume shell = constant({40, 40, 40}, 0);
+  std::swap(v, shell);
+  for (size_t x = 0; x < 40; ++x) {
+    for (size_t z = 0; z < 10; ++z) {
+      for (size_t y = 0; y < 40; ++y) set(x, y, z, 1);
+    }
+  }
+  for (size_t z = 14; z < 27; ++z) {
+    for (size_t y = 14; y < 27; ++y) {
+      for (size_t x = 14; x < 27; ++x) {
+        const bool wall = x < 16 || x > 24 || y < 16 || y > 24 || z < 16 || z > 24;
+        if (wall && (x + y + z) % 2 == 0) set(x, y, z, 1);
+      }
+    }
+  }
+  CHECK(components(0) > 1);
+  CHECK(components(27) == 1);
+}

@@ -285,3 +285,25 @@ TEST_CASE("missed places are the same for any number of threads", "[missed_place
     CHECK(all_of(marks) == all_of(tried));
   }
 }
+
+TEST_CASE("parts of fewer than 27 voxels joined by faces are nothing to an adaptive mesh",
+          "[missed_places]") {
+  for (const bool whole : {true, false}) {
+    BallScene scene({kMain});
+    for (int32_t z = 10; z < 13; ++z) {
+      for (int32_t y = 10; y < 13; ++y) {
+        for (int32_t x = 28; x < 31; ++x) scene.at(x, y, z) = 1;
+      }
+    }
+    // Still three by three by three, by an edge.
+    if (!whole) scene.at(28, 10, 10) = 0, scene.at(27, 9, 11) = 1;
+    Mesh mesh;
+    surface_around(mesh, kMain);
+    CHECK(find(mesh, scene, {kClearance, 0.6F}).count[kPart] == 1);
+    plc::Sizing sizing;
+    const plc::Schedule schedule(1);
+    REQUIRE(sizing.field.build(scene.view(), kIso, 1, {}, schedule).ok());
+    mesh.sizing = &sizing;
+    CHECK(find(mesh, scene, {kClearance, 0.6F}).count[kPart] == (whole ? 1 : 0));
+  }
+}
