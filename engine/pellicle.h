@@ -282,7 +282,8 @@ typedef enum plc_init PLC_INT {
   PLC_INIT_BUBBLES = 1, /* bubbles[0] x bubbles[1] x bubbles[2] bubbles over the image */
   PLC_INIT_SEEDS = 2,   /* the spheres of plc_extras */
   PLC_INIT_ISO = 3,     /* the iso-surface of the coarsest image, closed at the border (figure 23);
-                           of an adaptive mesh without parts and cavities of fewer than 27 voxels */
+                           of an adaptive mesh without cavities of fewer than 27 voxels, and parts
+                           of which no 27 are joined by faces; those get no late bubbles either */
   PLC_INIT_MASK = 4,    /* the surface of the mask of plc_extras, reduced like the image */
   PLC_INIT_MESH = 5,    /* the mesh of plc_extras, brought to satisfy (1)-(3) */
   PLC_INIT_AUTO = 6     /* PLC_INIT_ISO on I_0, where the mesh is adaptive, levels is 0 or, by

@@ -191,7 +191,7 @@ inline constexpr int64_t kPlaceVoxels = 27;
 // What still moves is not missed yet: a surface is searched when its energy is below this many
 // epsilon.
 inline constexpr double kLateEnergy = 10;
-// Iterations before an adaptive mesh is searched for the first time: the energy is near 0 from rest.
+// Iterations before an adaptive mesh is searched at first: the energy is near 0 from rest.
 inline constexpr int kEarlySearch = 5;
 // Times that I_0 is searched again after it has converged: what a bubble grows into may hide more.
 inline constexpr int kLateRounds = 2;

@@ -27,7 +27,8 @@ namespace {
 // it is faster, and what meets when it is thinned out further stays as fine as that.
 constexpr float kReaches[] = {0.63F, 1.05F};
 constexpr uint8_t kSteps = std::size(kReaches);
-// What meets stays finer, and is merged anew, so many times; then its block stays as it was.
+// What meets stays finer, and is merged anew, so many times; then its block stays as it was, or all
+// of the surface, where what meets has no block in common.
 constexpr int kTries = 8;
 // Side of a block, in delta, and by how much of it the grid of each stage is moved: what is at the
 // border of a block in one of them is within a block in another, but for some points.
@@ -97,8 +98,8 @@ class Thinning {
     std::iota(into_.begin(), into_.end(), 0U);
   }
 
-  // Those within the blocks of a grid, all blocks at once. No two faces of which one has a corner
-  // within a block meet afterwards, if they did not before.
+  // Those within the blocks of a grid, all blocks at once. Faces with corners in the same block do
+  // not meet afterwards, if they did not before.
   void run(const Grid& grid) {
     grid_ = &grid;
     flags_.assign(places_.size(), 0);
@@ -402,7 +403,7 @@ Status thin_out(const MeshArraysOf<float>& surface, const Schedule& schedule, co
     }
     Vector<uint32_t> ids;
     fill(mesh, thinning.mesh(), places, schedule, ids);
-    // Some lie in different blocks in every stage. As in a block one of two takes part in less.
+    // What meets lies in different blocks in every stage, and stays finer as in a block.
     Vector<uint8_t> meets(surface.vertex_count, 0);
     const auto meeting = meeting_faces(mesh, schedule);
     if (meeting.empty()) break;

@@ -12,15 +12,16 @@ namespace plc {
 // as long as kMeanEdge has them; all are where they were. What is nearer to one that stays is
 // merged into it, where the surface stays a manifold, no edge violates (2) and no face turns by
 // more than 60 degrees. No guard is asked, which is what makes it faster than conform.h: faces that
-// meet are looked for at the end, and what was merged around them stays finer.
+// meet are looked for when a block of the surface is done, and what was merged around them stays
+// finer.
 //
-// The blocks of a grid are thinned out at once, each by itself, and at last what lies between them;
-// so the same bits for any executor.
+// The blocks of a grid are thinned out at once, each by itself, then those of another grid, in
+// which lies within a block what was at a border; so the same bits for any executor.
 //
 // surface: closed, oriented, a manifold, embedded, in mesh space; every vertex has a face. The
 // result is embedded, too, without gaps in its ids, which lie along a Morton curve. mesh.sizing is
 // not null. Throws std::bad_alloc; kCancelled, with the mesh spoilt, where go_on, asked after every
-// search for faces that meet, says so.
+// grid, says so.
 Status thin_out(const MeshArraysOf<float>& surface, const Schedule& schedule, const GoOn& go_on,
                 Mesh& mesh);
 

@@ -22,12 +22,12 @@ struct Result {
   plc::SurfaceMeasures measures;
 };
 
-Result recovered(Run run, const plc::SizeSpec& sizes = {}) {
+Result recovered(Run run, const plc::SizeSpec& sizes = {}, const plc::RecoveryHooks& hooks = {}) {
   run.recovery.sizes = sizes;
   Result r;
   const plc::Schedule schedule(2);
-  REQUIRE(plc::pyramidal_recover_shape(samples::pyramid_of(run), run.recovery, schedule, {}, r.mesh,
-                                       r.records)
+  REQUIRE(plc::pyramidal_recover_shape(samples::pyramid_of(run), run.recovery, schedule, hooks,
+                                       r.mesh, r.records)
               .message() == "");
   CHECK(plc::broken_invariant(r.mesh) == "");
   CHECK(plc::meeting_faces(r.mesh, schedule).empty());
@@ -120,7 +120,19 @@ TEST_CASE("a start from the iso-surface has the sizes of its level", "[adaptive]
   run.pyramid.levels = 0;
   run.recovery.isos = {0.5};
   run.recovery.start.init = plc::Init::kIso;
-  const Result r = recovered(run);
+  int iterations = 0;
+  std::vector<int> searched;  // after so many iterations
+  plc::RecoveryHooks hooks;
+  hooks.pass = [&](const std::string& pass, uint32_t, const plc::Evolution&) {
+    iterations += pass == "resolution" ? 1 : 0;
+    if (pass == "late bubbles") searched.push_back(iterations);
+  };
+  const Result r = recovered(run, {}, hooks);
+  // For the first time when it is near rest, and again when it has come to it.
+  REQUIRE(searched.size() > 1);
+  CHECK(searched[0] >= plc::kEarlySearch);
+  CHECK(searched[0] < 10);
+  CHECK(searched[1] > searched[0] + 3);
   CHECK(r.measures.components == 1);
   CHECK(r.measures.genus == 0);
   CHECK(r.measures.volume == Approx(3.14159 * 256 * 1.3).epsilon(0.1));
