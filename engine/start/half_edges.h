@@ -61,8 +61,10 @@ class HalfEdges {
     uint32_t id, from, twin;
   };
   HalfEdge half_edge(uint32_t h) const { return {h, corner_[h], twin_[h]}; }
+  // Nothing is written where h began before: a face across the edge of what one thread changes may
+  // be read by others.
   void put_back(const HalfEdge& h) {
-    corner_[h.id] = h.from;
+    if (corner_[h.id] != h.from) corner_[h.id] = h.from;
     twin_[h.id] = h.twin;
   }
   void put_back(uint32_t v, uint32_t out) { out_[v] = out; }
