@@ -69,7 +69,8 @@ Status Recovery::step() {
       return iterate();
     case Phase::kSearch: {
       phase_ = Phase::kIterate;
-      (searched_early() ? round_.searched_early : round_.searched) = true;
+      bool& searched = is_due_early() ? round_.searched_early : round_.searched;
+      searched = true;
       bool added = false;
       return search(added);
     }
@@ -237,7 +238,7 @@ Status Recovery::iterate() {
   r.converged = confirmed(round_.calm);
   estimate_progress();
   renumber_if_scattered();
-  if (searched_early()) phase_ = Phase::kSearch;
+  if (is_due_early()) phase_ = Phase::kSearch;
   if (r.converged || iterations_left() == 0) phase_ = Phase::kCheck;
   return report_progress();
 }
@@ -303,7 +304,8 @@ bool Recovery::searched_again() const {
          late_iterations_ < spec_.max_iterations;
 }
 
-bool Recovery::searched_early() const {
+// ... and, of an adaptive mesh, before it has come to rest.
+bool Recovery::is_due_early() const {
   return mesh_.sizing != nullptr && searched_again() && round_.number == 0 &&
          !round_.searched_early && round_.iteration >= kEarlySearch && near_rest() &&
          !evolution_.travelling();

@@ -174,7 +174,7 @@ class Recovery {
   void check();
   Status verify();
   bool searched_again() const;
-  bool searched_early() const;
+  bool is_due_early() const;
   bool near_rest() const;
   Status search(bool& added);
   Status end_round();

@@ -40,7 +40,7 @@ using Face = std::array<uint32_t, 3>;
 class Lattice {
  public:
   Lattice(const ImageObject& object, const LatticeValues& values)
-      : object_(object), image_(object.image), values_(values), iso_(object.iso) {
+      : object_(object), image_(object.image), values_(values) {
     for (size_t a = 0; a < 3; ++a) size_[a] = static_cast<size_t>(image_.dims[a]) + 2;
   }
 
@@ -67,7 +67,7 @@ class Lattice {
     if (is_voxel(from) && is_voxel(to)) {
       const double a = values_.at(voxel(from[0]), voxel(from[1]), voxel(from[2]));
       const double b = values_.at(voxel(to[0]), voxel(to[1]), voxel(to[2]));
-      t = (static_cast<double>(iso_) - a) / (b - a);
+      t = (static_cast<double>(object_.iso) - a) / (b - a);
       t = t > kIsoMargin ? std::min(t, 1 - kIsoMargin) : kIsoMargin;  // a NaN is put at the margin
     }
     std::array<float, 3> p{};
@@ -81,10 +81,7 @@ class Lattice {
 
   // Whether a voxel is there and inside.
   bool has(const Voxel& v) const {
-    for (size_t a = 0; a < 3; ++a) {
-      if (v[a] < 0 || v[a] >= image_.dims[a]) return false;
-    }
-    return object_.has(values_.at(v[0], v[1], v[2]));
+    return is_within(image_.dims, v) && object_.has(values_.at(v[0], v[1], v[2]));
   }
   // That voxel of the two beside a crossing that is inside.
   Voxel inside_of(const float* crossing) const {
@@ -109,7 +106,6 @@ class Lattice {
   const ImageObject& object_;
   const ImageView& image_;
   const LatticeValues& values_;
-  float iso_;
   std::array<size_t, 3> size_{};
 };
 

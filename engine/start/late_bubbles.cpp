@@ -47,21 +47,17 @@ class Cutout {
   // How far a value lies on the object's side of iso, for parts; on the other, for cavities.
   float depth(float value) const { return up_ ? value - iso_ : iso_ - value; }
 
-  bool in_image(const Voxel& v) const {
-    return v[0] >= 0 && v[1] >= 0 && v[2] >= 0 && v[0] < image_.dims[0] && v[1] < image_.dims[1] &&
-           v[2] < image_.dims[2];
-  }
   // Above 0 inside, or 0; below 0 outside.
   float value(int32_t x, int32_t y, int32_t z) const {
     const Voxel v{x + first_[0], y + first_[1], z + first_[2]};
-    if (!in_image(v)) return -1;
+    if (!is_within(image_.dims, v)) return -1;
     const float d = depth(image_value(image_, v[0], v[1], v[2]));
     return voxels_.has(v) ? std::max(d, 0.0F) : -std::max(std::abs(d), kLeast);
   }
   void find_sides(int32_t y, int32_t z, uint8_t* inside) const {
     const int32_t row = y + first_[1], plane = z + first_[2];
     std::fill_n(inside, view_.dims[0], uint8_t{0});
-    if (!in_image({0, row, plane})) return;
+    if (!is_within(image_.dims, {0, row, plane})) return;
     const int32_t begin = std::max(first_[0], 0);
     const int32_t end = std::min(first_[0] + view_.dims[0], image_.dims[0]);
     voxels_.visit_row(row, plane, begin, end, [&](int32_t x) { inside[x - first_[0]] = 1; });

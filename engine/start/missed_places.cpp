@@ -137,12 +137,12 @@ class Search {
     }
   }
 
-  // The place of the seed, taken out of `left`. joins: whether `joined` is asked for.
-  Place examine(const Voxel& seed, const VoxelSet& kind, const VoxelSet& tried, bool joins,
+  // The place of the seed, taken out of `left`. asks_joined: whether `joined` is asked for.
+  Place examine(const Voxel& seed, const VoxelSet& kind, const VoxelSet& tried, bool asks_joined,
                 VoxelSet& left) {
     Place place;
     const auto is_object = [&](const Voxel& v) {
-      return within(v) && object_.has(image_value(image_, v[0], v[1], v[2]));
+      return is_within(image_.dims, v) && object_.has(image_value(image_, v[0], v[1], v[2]));
     };
     left.erase(seed);
     flood(
@@ -151,7 +151,7 @@ class Search {
           ++place.voxels;
           place.tried = place.tried || tried.has(v);
           place.holds = place.holds || free(v, kind, around_) || free(v, kind, between_);
-          place.joined = place.joined || (joins && is_joined(v, kPlaceVoxels, is_object));
+          place.joined = place.joined || (asks_joined && is_joined(v, kPlaceVoxels, is_object));
         },
         [&](const Voxel& v) {
           const bool found = left.has(v);
@@ -311,17 +311,10 @@ class Search {
       for (int32_t y = -1; y <= 1; ++y) {
         for (int32_t x = -1; x <= 1; ++x) {
           const Voxel v{at[0] + x, at[1] + y, at[2] + z};
-          if (within(v)) visit(v);
+          if (is_within(image_.dims, v)) visit(v);
         }
       }
     }
-  }
-
-  bool within(const Voxel& v) const {
-    for (size_t a = 0; a < 3; ++a) {
-      if (v[a] < 0 || v[a] >= image_.dims[a]) return false;
-    }
-    return true;
   }
 
   float box_distance(const Voxel& offset, float shift) const {
@@ -337,7 +330,7 @@ class Search {
   bool free(const Voxel& at, const VoxelSet& kind, const Vector<Voxel>& ball) const {
     return std::all_of(ball.begin(), ball.end(), [&](const Voxel& o) {
       const Voxel v{at[0] + o[0], at[1] + o[1], at[2] + o[2]};
-      return within(v) && kind.has(v);
+      return is_within(image_.dims, v) && kind.has(v);
     });
   }
 
@@ -384,10 +377,10 @@ MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object,
     places.voxels[k] = VoxelSet(image.dims);
     VoxelSet left(missed[k]);
     left.visit([&](const Voxel& seed) {
-      const bool crumbs = mesh.sizing == nullptr || k != static_cast<size_t>(Missed::kPart);
-      const Place place = search.examine(seed, missed[k], tried, !crumbs, left);
+      const bool asks_joined = mesh.sizing != nullptr && k == static_cast<size_t>(Missed::kPart);
+      const Place place = search.examine(seed, missed[k], tried, asks_joined, left);
       const bool thin = mesh.sizing != nullptr && place.voxels >= kPlaceVoxels;
-      if (!(place.holds || thin) || place.tried || !(crumbs || place.joined)) return;
+      if (!(place.holds || thin) || place.tried || (asks_joined && !place.joined)) return;
       if (search.keep(seed, missed[k], limits.thinnest, tried, places.voxels[k], places.low[k],
                       places.high[k])) {
         ++places.count[k];

@@ -28,7 +28,7 @@ namespace {
 constexpr float kReaches[] = {0.63F, 1.05F};
 constexpr uint8_t kSteps = std::size(kReaches);
 // What meets stays finer, and is merged anew, so many times; then its block stays as it was, or all
-// of the surface, where what meets has no block in common.
+// of the surface, where what meets was merged in different blocks.
 constexpr int kTries = 8;
 // Side of a block, in delta, and by how much of it the grid of each stage is moved: what is at the
 // border of a block in one of them is within a block in another, but for some points.
@@ -60,9 +60,10 @@ class Grid {
     const uint32_t columns = along(0, high[0]) + 1, rows = along(1, high[1]) + 1;
     begin_.assign(size_t{columns} * rows * (along(2, high[2]) + 1) + 1, 0);
     for (uint32_t v = 0; v < block_.size(); ++v) {
+      if (!surface.alive(v)) continue;
       const Vec3 p = places[v].at;
       block_[v] = (along(2, p.z) * rows + along(1, p.y)) * columns + along(0, p.x);
-      if (surface.alive(v)) ++begin_[block_[v] + size_t{1}];
+      ++begin_[block_[v] + size_t{1}];
     }
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     ids_.resize(begin_.back());
@@ -78,7 +79,7 @@ class Grid {
   }
 
  private:
-  Vector<uint32_t> block_;  // of each vertex
+  Vector<uint32_t> block_;  // of each vertex that is there
   Vector<size_t> begin_;    // of each block, in ids_
   Vector<uint32_t> ids_;    // ascending in each block
 };
@@ -403,7 +404,7 @@ Status thin_out(const MeshArraysOf<float>& surface, const Schedule& schedule, co
     }
     Vector<uint32_t> ids;
     fill(mesh, thinning.mesh(), places, schedule, ids);
-    // What meets lies in different blocks in every stage, and stays finer as in a block.
+    // What meets was merged in different blocks. It stays finer, as what meets in a block.
     Vector<uint8_t> meets(surface.vertex_count, 0);
     const auto meeting = meeting_faces(mesh, schedule);
     if (meeting.empty()) break;

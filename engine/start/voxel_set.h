@@ -16,6 +16,10 @@ namespace plc {
 
 using Voxel = std::array<int32_t, 3>;  // x, y, z
 
+inline bool is_within(const int32_t (&dims)[3], const Voxel& v) {
+  return v[0] >= 0 && v[1] >= 0 && v[2] >= 0 && v[0] < dims[0] && v[1] < dims[1] && v[2] < dims[2];
+}
+
 // Every slice is cut into blocks of kBlock successive voxels; a block exists once a voxel of it was
 // put in. The sets here follow surfaces: on an image of 1024^3 a byte per voxel would be a
 // gigabyte, a bit 128 MiB, the blocks along a surface some megabytes beside 2 MiB that tell which

@@ -251,10 +251,13 @@ TEST_CASE("parts and cavities of too few voxels are left out, but for the larges
 
 TEST_CASE("parts whose voxels hang together by edges alone are left out, with their cavities",
           "[iso_surface]") {
-  // Pairs of voxels along a diagonal, 36 in all; and a ball, the largest.
-  Volume v = samples::sphere_potential(constant({40, 40, 40}, 0), 0.2);
-  const auto set = [&](size_t x, size_t y, size_t z, float value) {
-    v.values[(z * 40 + y) * 40 + x] = value;
+  Volume v = constant({40, 40, 40}, 0);
+  const auto fill = [&](std::array<size_t, 3> low, std::array<size_t, 3> high, float value) {
+    for (size_t z = low[2]; z < high[2]; ++z) {
+      for (size_t y = low[1]; y < high[1]; ++y) {
+        for (size_t x = low[0]; x < high[0]; ++x) v.values[(z * 40 + y) * 40 + x] = value;
+      }
+    }
   };
   const auto components = [&](int64_t least) {
     const plc::ImageView view = view_of(v);
@@ -265,34 +268,24 @@ TEST_CASE("parts whose voxels hang together by edges alone are left out, with th
     const std::vector<double> xyz(crossings.xyz.begin(), crossings.xyz.end());
     return plc::surface_measures(plc::arrays_of(xyz, crossings.abc), samples::kSerial).components;
   };
-  CHECK(components(27) == 1);
-  for (size_t i = 0; i < 18; ++i) {
-    for (const size_t z : {2U, 3U}) set(2 + i, 2 + i, z, 1);
-  }
+  // A slab, the largest; pairs of voxels along a diagonal, 36 in all.
+  fill({0, 0, 28}, {40, 40, 40}, 1);
+  for (size_t i = 0; i < 18; ++i) fill({2 + i, 2 + i, 2}, {3 + i, 3 + i, 4}, 1);
   CHECK(components(0) == 2);
   CHECK(components(27) == 1);
   // With 27 voxels at its end it is a part.
-  for (size_t x = 20; x < 38; ++x) set(x, 19, 3, 1);
+  fill({20, 19, 3}, {38, 20, 4}, 1);
   CHECK(components(27) == 1);
-  for (size_t x = 20; x < 38; ++x) set(x, 19, 2, 1);
+  fill({20, 19, 2}, {38, 20, 4}, 1);
   CHECK(components(27) == 2);
-  // The ball is of a chequered shell, no two of whose voxels are joined: it goes with its cavity,
-  // as the part is the larger one.
-  Volume shell = constant({40, 40, 40}, 0);
-  std::swap(v, shell);
-  for (size_t x = 0; x < 40; ++x) {
-    for (size_t z = 0; z < 10; ++z) {
-      for (size_t y = 0; y < 40; ++y) set(x, y, z, 1);
-    }
-  }
-  for (size_t z = 14; z < 27; ++z) {
-    for (size_t y = 14; y < 27; ++y) {
-      for (size_t x = 14; x < 27; ++x) {
-        const bool wall = x < 16 || x > 24 || y < 16 || y > 24 || z < 16 || z > 24;
-        if (wall && (x + y + z) % 2 == 0) set(x, y, z, 1);
-      }
-    }
-  }
-  CHECK(components(0) > 1);
-  CHECK(components(27) == 1);
+  // A shell of 866 voxels around a cavity of 1331.
+  fill({0, 0, 0}, {40, 40, 28}, 0);
+  fill({8, 8, 8}, {21, 21, 21}, 1);
+  fill({9, 9, 9}, {20, 20, 20}, 0);
+  CHECK(components(866) == 3);
+  CHECK(components(867) == 1);
+  // By its edge, a block of 1296: now it is a part, and its cavity stays.
+  fill({21, 21, 8}, {33, 33, 17}, 1);
+  CHECK(components(867) == 3);
+  CHECK(components(1297) == 1);
 }
