@@ -23,15 +23,16 @@ struct VoxelForm {
   ImageType type = ImageType::kUnit;
   int32_t pad = 0;      // voxels on every side that the image has and the memory has not; kUnit: 0
   float pad_value = 0;  // their value, in [0,1]
-  // The value of a stored voxel v: (float(v) - low) * scale, clipped to [0,1], NaN is 0. In floats,
-  // each operation rounded once: the same bits whoever reads the voxel. Not used by kUnit.
-  float low = 0, scale = 1;
+  // The value of a stored voxel v: (float(v) - low) * scale, clipped to [-beyond, 1 + beyond], NaN
+  // is the least. In floats, each operation rounded once: the same bits whoever reads the voxel.
+  // Not used by kUnit.
+  float low = 0, scale = 1, beyond = 0;
 };
 
-// Values in [0,1], x fastest. A point p of mesh space lies at voxel coordinate
-// scale * p + offset on each axis (voxel centres at integers), clamped to the image: outside, the
-// border voxels are replicated (paper, 4.2). No coordinate makes a kernel read outside the image: a
-// NaN counts as the image's lower border.
+// Values in [0,1], or `beyond` farther out, x fastest. A point p of mesh space lies at voxel
+// coordinate scale * p + offset on each axis (voxel centres at integers), clamped to the image:
+// outside, the border voxels are replicated (paper, 4.2). No coordinate makes a kernel read outside
+// the image: a NaN counts as the image's lower border.
 struct ImageView {
   const void* data = nullptr;  // dims - 2 pad voxels of form.type, borrowed
   // With the padding, each >= 2. The product is below 2^31 where the voxels are UnitVoxels; else

@@ -10,7 +10,8 @@
 namespace plc::kernels {
 
 // values[i] = trilinear interpolation of the image at position[i], i = begin .. end-1, any range:
-// lerp(a, b, t) = a + (b - a) t along x, then y, then z.
+// lerp(a, b, t) = a + (b - a) t along x, then y, then z; what voxels beyond [0,1] make of it
+// clipped to [0,1].
 void sample_trilinear(SimdTarget simd, const ImageView& image, const Float4* position,
                       uint32_t begin, uint32_t end, float* values);
 

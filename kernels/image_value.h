@@ -10,14 +10,13 @@
 
 namespace plc {
 
-// The value of a stored voxel, by VoxelForm; clipped `beyond` farther out, but what a UnitVoxel has
-// lost is lost.
+// The value of a stored voxel, by VoxelForm.
 template <class Voxel>
-inline float voxel_value(const VoxelForm& form, Voxel voxel, float beyond = 0) {
+inline float voxel_value(const VoxelForm& form, Voxel voxel) {
   if constexpr (std::is_same_v<Voxel, UnitVoxel>) {
     return voxel.value;
   } else {
-    const float low = 0.0F - beyond, high = 1.0F + beyond;
+    const float low = 0.0F - form.beyond, high = 1.0F + form.beyond;
     float t = (static_cast<float>(voxel) - form.low) * form.scale;
     t = t > low ? t : low;
     return t < high ? t : high;
@@ -37,8 +36,7 @@ inline const Voxel* stored_row(const ImageView& image, int64_t y, int64_t z) {
 
 // At voxel (x, y, z), which lies in an image of bricks, within BrickReads.
 template <class Voxel>
-inline float brick_value(const ImageView& image, int64_t x, int64_t y, int64_t z,
-                         float beyond = 0) {
+inline float brick_value(const ImageView& image, int64_t x, int64_t y, int64_t z) {
   if constexpr (std::is_same_v<Voxel, UnitVoxel>) {
     return 0;  // there are none
   } else {
@@ -47,22 +45,21 @@ inline float brick_value(const ImageView& image, int64_t x, int64_t y, int64_t z
     if (!stored(x, image.dims[0]) || !stored(y, image.dims[1]) || !stored(z, image.dims[2])) {
       return image.form.pad_value;
     }
-    return voxel_value(image.form, image.bricks->voxel<Voxel>(x - pad, y - pad, z - pad), beyond);
+    return voxel_value(image.form, image.bricks->voxel<Voxel>(x - pad, y - pad, z - pad));
   }
 }
 
 // At voxel (x, y, z), which lies in the image.
 template <class Voxel>
-inline float image_value(const ImageView& image, int64_t x, int64_t y, int64_t z,
-                         float beyond = 0) {
+inline float image_value(const ImageView& image, int64_t x, int64_t y, int64_t z) {
   if (image.bricks != nullptr) {
     const BrickReads reads(image.bricks);
-    return brick_value<Voxel>(image, x, y, z, beyond);
+    return brick_value<Voxel>(image, x, y, z);
   }
   const int64_t pad = image.form.pad;
   const Voxel* row = stored_row<Voxel>(image, y, z);
   if (row == nullptr || x < pad || x >= image.dims[0] - pad) return image.form.pad_value;
-  return voxel_value(image.form, row[x - pad], beyond);
+  return voxel_value(image.form, row[x - pad]);
 }
 inline float image_value(const ImageView& image, int64_t x, int64_t y, int64_t z) {
   float value = 0;

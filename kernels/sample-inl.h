@@ -85,19 +85,27 @@ HWY_INLINE Floats4 load_cells(const Voxel* plane, size_t row, const uint32_t* of
 // The values of stored voxels; the bits of voxel_value().
 template <class Voxel>
 struct VoxelValues {
-  Floats low, scale;
+  Floats low, scale, least, most;
   HWY_INLINE explicit VoxelValues(const VoxelForm& form)
-      : low(hn::Set(FloatTag(), form.low)), scale(hn::Set(FloatTag(), form.scale)) {}
+      : low(hn::Set(FloatTag(), form.low)),
+        scale(hn::Set(FloatTag(), form.scale)),
+        least(hn::Set(FloatTag(), 0.0F - form.beyond)),
+        most(hn::Set(FloatTag(), 1.0F + form.beyond)) {}
   HWY_INLINE Floats operator()(Floats voxel) const {
     if constexpr (std::is_same_v<Voxel, UnitVoxel>) return voxel;
-    const FloatTag d;
-    const Floats one = hn::Set(d, 1.0F);
     const Floats t = hn::Mul(hn::Sub(voxel, low), scale);
-    if constexpr (std::is_integral_v<Voxel>) return hn::Min(hn::Max(t, hn::Zero(d)), one);
-    const Floats positive = hn::IfThenElseZero(hn::Gt(t, hn::Zero(d)), t);  // of a NaN: 0
-    return hn::IfThenElse(hn::Lt(positive, one), positive, one);
+    if constexpr (std::is_integral_v<Voxel>) return hn::Min(hn::Max(t, least), most);
+    const Floats above = hn::IfThenElse(hn::Gt(t, least), t, least);  // of a NaN: the least
+    return hn::IfThenElse(hn::Lt(above, most), above, most);
   }
 };
+
+// Voxels count as they are, so that iso-surfaces lie where they do, and what lies between them is
+// of the window: a place far from the surface is pulled no more than the window tells.
+HWY_INLINE Floats within_window(Floats value) {
+  const FloatTag d;
+  return hn::Min(hn::Max(value, hn::Zero(d)), hn::Set(d, 1.0F));
+}
 
 // Bilinear in a plane of voxels: x, then y.
 template <class Voxel>
@@ -177,7 +185,7 @@ HWY_NOINLINE Floats sample_padded(const ImageView& image, const Cells& x, const 
     };
     return lerp(along_x(ys[0]), along_x(ys[1]), y.fraction);
   };
-  return lerp(plane(zs[0]), plane(zs[1]), z.fraction);
+  return within_window(lerp(plane(zs[0]), plane(zs[1]), z.fraction));
 }
 
 // The same of an image of bricks.
@@ -208,8 +216,8 @@ HWY_NOINLINE Floats sample_bricks(const ImageView& image, const Cells& x, const 
   const auto along_x = [&](size_t c) HWY_ATTR {
     return lerp(value(hn::Load(d, voxel[c])), value(hn::Load(d, voxel[c + 1])), x.fraction);
   };
-  return lerp(lerp(along_x(0), along_x(2), y.fraction), lerp(along_x(4), along_x(6), y.fraction),
-              z.fraction);
+  return within_window(lerp(lerp(along_x(0), along_x(2), y.fraction),
+                            lerp(along_x(4), along_x(6), y.fraction), z.fraction));
 }
 
 // The image's value at p; Voxel is that of image.form.type. The bits of the scalar twin, and of the
@@ -232,7 +240,7 @@ HWY_INLINE Floats sample(const ImageView& image, const Floats3& p) {
   const Floats below = sample_plane(voxels, cells.row, cells.first, value, x.fraction, y.fraction);
   const Floats above =
       sample_plane(voxels + cells.plane, cells.row, cells.first, value, x.fraction, y.fraction);
-  return lerp(below, above, z.fraction);
+  return within_window(lerp(below, above, z.fraction));
 }
 
 }  // namespace plc::kernels::HWY_NAMESPACE

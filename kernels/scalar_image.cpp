@@ -50,6 +50,10 @@ float trilinear(const AxisCell& x, const AxisCell& y, const AxisCell& z, const V
   return lerp(in_plane(0), in_plane(1), z.fraction);
 }
 
+float within_window(float value) {
+  return std::min(std::max(value, 0.0F), 1.0F);
+}
+
 template <class Voxel>
 float sample(const ImageView& image, const Float4& p) {
   const AxisCell x = axis_cell(p.x, image.scale[0], image.offset[0], image.dims[0]);
@@ -62,17 +66,17 @@ float sample(const ImageView& image, const Float4& p) {
   };
   if (!kUnit && (image.bricks != nullptr || !stored(x, image.dims[0]) ||
                  !stored(y, image.dims[1]) || !stored(z, image.dims[2]))) {
-    return trilinear(x, y, z, [&](int32_t i, int32_t j, int32_t k) {
+    return within_window(trilinear(x, y, z, [&](int32_t i, int32_t j, int32_t k) {
       return image_value<Voxel>(image, x.index + i, y.index + j, z.index + k);
-    });
+    }));
   }
   const auto row = static_cast<ptrdiff_t>(image.dims[0] - 2 * pad);
   const ptrdiff_t plane = row * (image.dims[1] - 2 * pad);
   const Voxel* cell = static_cast<const Voxel*>(image.data) + (x.index - pad) +
                       (y.index - pad) * row + (z.index - pad) * plane;
-  return trilinear(x, y, z, [&](int32_t i, int32_t j, int32_t k) {
+  return within_window(trilinear(x, y, z, [&](int32_t i, int32_t j, int32_t k) {
     return voxel_value(image.form, cell[i + j * row + k * plane]);
-  });
+  }));
 }
 
 Triple sample(const GradientView& gradient, const Float4& p) {

@@ -31,9 +31,6 @@ constexpr double kOff = 1.0 / 16;
 // nearer to 0 than this many standard deviations.
 constexpr std::array<float, 3> kSecond{1, -2, 1};
 constexpr double kSeenOfNoise = 14.697, kMedian = 0.6745;
-// Noise is measured in values that are clipped only so far beyond 0 and 1: clipped there, most of
-// what is around a surface is even.
-constexpr float kBeyond = 4;
 // Of noise of variance 1, what is left in the difference of two smoothed voxels with one between.
 constexpr double kLeftOfNoise = 0.625 * 0.375 * 0.375;
 
@@ -86,7 +83,7 @@ class Tile {
     for (auto& t : tensor_) t.resize(kVolume);
   }
 
-  // first: its first voxel. Values are those of the image, clipped kBeyond farther out.
+  // first: its first voxel.
   void read(const ImageView& image, int32_t padding, const std::array<int32_t, 3>& first) {
     const auto within = [&](int32_t i, size_t a) {
       return std::clamp(first[a] - kHalo + i, 0, image.dims[a] - 1);
@@ -100,8 +97,7 @@ class Tile {
       for (int32_t z = 0; z < kSide; ++z) {
         for (int32_t y = 0; y < kSide; ++y) {
           for (int32_t x = 0; x < kSide; ++x) {
-            *to++ = image_value<decltype(voxel)>(image, within(x, 0), within(y, 1), within(z, 2),
-                                                 kBeyond);
+            *to++ = image_value<decltype(voxel)>(image, within(x, 0), within(y, 1), within(z, 2));
           }
         }
       }

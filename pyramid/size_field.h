@@ -34,11 +34,11 @@ class SizeField {
   // The range of above_delta(), in delta.
   static constexpr float kLeast = kStep - 1, kMost = 255 * kStep - 1;
 
-  // image: of the level, its scale and offset those of mesh space. delta: in mesh units. The same
-  // bits for any executor. Where the iso-surface is not near, sizes are the coarsest that the slope
-  // allows. padding: voxels on each side that nobody measured, which have no noise. room: what
-  // alone is looked at and has sizes of its own, with up to 15 voxels around it. Errors:
-  // kOutOfMemory.
+  // image: of the level, its scale and offset those of mesh space; clipped to its window most of it
+  // is even, and noise is not seen. delta: in mesh units. The same bits for any executor. Where the
+  // iso-surface is not near, sizes are the coarsest that the slope allows. padding: voxels on each
+  // side that nobody measured, which have no noise. room: what alone is looked at and has sizes of
+  // its own, with up to 15 voxels around it. Errors: kOutOfMemory.
   Status build(const ImageView& image, float iso, double delta, const SizeSpec& spec,
                const Executor& executor, int32_t padding, const VoxelRoom& room);
   Status build(const ImageView& image, float iso, double delta, const SizeSpec& spec,

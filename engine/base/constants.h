@@ -172,6 +172,10 @@ inline constexpr float kThinSheet = 1.8F;
 // Room between a bubble and the vertices of the rest, in delta: (3) and a little. No point of a
 // face is this far from its corners.
 inline constexpr float kBubbleGap = 1.5F;
+// The image that an adaptive mesh is drawn by holds values so far beyond its window, in windows:
+// between clipped voxels the iso-surface lies elsewhere, by up to a third of a voxel where the
+// image is steep.
+inline constexpr float kBeyondWindow = 4;
 // Where a place gets a bubble, and where the surface bends though the image does not, sizes of an
 // adaptive mesh are at most this, in delta: the border of a hole in a plate is nothing of the
 // image's, by which its edges would be long.

@@ -21,6 +21,8 @@ void Recovery::enter(int h) {
   if (!spec_.obstacle_abc.empty() && !obstacles_) place_obstacles();
   if (mesh_.vertex_count() != 0) change_space(mesh_, before, space_);
   guide_.image = image_view(pyramid_, h, spec_.pad_voxels, space_);
+  // The bits of uniform ones are recorded.
+  if (spec_.sizes) guide_.image.form.beyond = kBeyondWindow;
   guide_.iso = iso_of(h).value_or(0);
   guide_.metric = space_.metric;
   place_room();

@@ -270,8 +270,11 @@ Status make_start(const StartSpec& spec, const LevelImage& level, double delta,
       return make_seeds(spec, level, delta, schedule, mesh);
     case Init::kIso:
       assert(level.iso);
+      if (mesh.sizing != nullptr) {
+        return make_iso(mesh.sizing->object, delta, schedule, kPlaceVoxels, go_on, mesh);
+      }
       return make_iso({view_of(level, level.pyramid), *level.iso, level.inside_above}, delta,
-                      schedule, mesh.sizing == nullptr ? 0 : kPlaceVoxels, go_on, mesh);
+                      schedule, 0, go_on, mesh);
     case Init::kMask:
       return make_iso({view_of(level, spec.mask), 0.5F, true}, delta, schedule, 0, go_on, mesh);
     case Init::kMesh:

@@ -100,6 +100,25 @@ TEST_CASE("sampling is trilinear between voxel centres", "[kernels]") {
   }
 }
 
+TEST_CASE("between voxels that the window clips samples are those of the voxels as they are",
+          "[kernels]") {
+  // -1 and 3, of which iso 0.5 is 3/8 away from the first; clipped it would be in the middle.
+  const std::vector<int16_t> voxels = {0, 400, 0, 400, 0, 400, 0, 400};
+  ImageView image;
+  image.data = voxels.data();
+  for (int32_t& dim : image.dims) dim = 2;
+  image.form = {plc::ImageType::kI16, 0, 0, 100, 0.01F, 4};
+  const std::vector<Float4> position(8, {0.375F, 0.3F, 0.6F, 0});
+  const std::vector<Float4> far(8, {0.1F, 0.3F, 0.6F, 0});
+  for (const SimdTarget simd : plc::available_simd_targets()) {
+    std::vector<float> near_iso(8), below(8);
+    kernels::sample_trilinear(simd, image, position.data(), 0, 8, near_iso.data());
+    kernels::sample_trilinear(simd, image, far.data(), 0, 8, below.data());
+    for (const float value : near_iso) REQUIRE(value == Approx(0.5F));
+    for (const float value : below) REQUIRE(value == 0);
+  }
+}
+
 TEST_CASE("a sample on a voxel is that voxel", "[kernels]") {
   const Image image(5, 4, 3, 3);
   std::vector<Float4> position;

@@ -98,7 +98,7 @@ TEST_CASE("noise is told from shape, also where values are clipped", "[size_fiel
       value += deviation * static_cast<float>(sum);
     }
     plc::ImageView view = noisy.view();
-    view.form = {plc::ImageType::kF32, 0, 0, 0, 1};
+    view.form = {plc::ImageType::kF32, 0, 0, 0, 1, 4};
     plc::SizeField field;
     REQUIRE(field.build(view, 0.5F, 1, {}, samples::kSerial).ok());
     // Values rise by 0.25 a delta.

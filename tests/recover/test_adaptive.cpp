@@ -99,6 +99,31 @@ TEST_CASE("flat parts take a quarter of the vertices that the finest size takes 
   CHECK(adaptive.measures.volume == Approx(finest.measures.volume).epsilon(0.01));
 }
 
+TEST_CASE("a steep image is met where it crosses iso, not where it does once clipped",
+          "[adaptive]") {
+  constexpr double kRadius = 12.3;
+  const auto radius_at = [](double x, double y, double z) {
+    return std::sqrt((x - 21.4) * (x - 21.4) + (y - 21.6) * (y - 21.6) + (z - 21.3) * (z - 21.3));
+  };
+  Run run = run_of("ball", {44, 44, 44}, [](double, double, double) { return 0.0; });
+  for (size_t i = 0; i < run.volume.values.size(); ++i) {
+    const double d =
+        kRadius - radius_at(static_cast<double>(i % 44), static_cast<double>(i / 44 % 44),
+                            static_cast<double>(i / 44 / 44));
+    run.volume.values[i] = static_cast<float>(0.5 + 2 * d);
+  }
+  const Result r = recovered(std::move(run));
+  double squared = 0;
+  for (uint32_t v = 0; v < r.mesh.slots(); ++v) {
+    const plc::Vec3 p = r.mesh.at(v);
+    const double off =
+        radius_at(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)) -
+        kRadius;
+    squared += off * off / r.mesh.vertex_count();
+  }
+  CHECK(squared < 0.05 * 0.05);
+}
+
 TEST_CASE("a rod of two voxels, which a uniform mesh loses, is there whole", "[adaptive]") {
   const Result r = recovered(rod(1.1));
   CHECK(r.measures.components == 1);

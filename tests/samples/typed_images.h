@@ -1,4 +1,4 @@
-// Images in every voxel type, and the same as floats in [0,1].
+// Images in every voxel type, and the same as floats.
 #pragma once
 #include <random>
 #include <type_traits>
@@ -20,8 +20,8 @@ constexpr plc::ImageType image_type() {
 }
 
 // Random voxels of all of the type's range (floats: -20 .. 20, some of them NaN), a window that
-// clips some of them, and a padding. The voxels fill their allocation: a sanitizer sees what is
-// read beside them.
+// some of them are beyond and some clipped, and a padding. The voxels fill their allocation: a
+// sanitizer sees what is read beside them.
 template <typename Voxel>
 struct TypedImage {
   std::vector<Voxel> voxels;
@@ -46,7 +46,7 @@ struct TypedImage {
                       : std::is_same_v<Voxel, int16_t> ? -20000.3F
                                                        : 30.7F;
     const float width = sizeof(Voxel) == 1 ? 180.1F : sizeof(Voxel) == 2 ? 33000.7F : 25.3F;
-    view.form = {image_type<Voxel>(), pad, 0.375F, low, 1 / width};
+    view.form = {image_type<Voxel>(), pad, 0.375F, low, 1 / width, 0.2F};
   }
 
   // The whole image as floats, its padding included.
