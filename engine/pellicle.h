@@ -340,7 +340,9 @@ typedef enum plc_mesh_kind PLC_INT {
  *
  * Those of an adaptive mesh are by place: where the image's iso-surface bends as a ball of radius R
  * they are about 3 sqrt(tolerance R) in the mean, but within edge_min .. edge_max; 1.6 v at most
- * around what was found late, and where the surface is folded though the image is not.
+ * around what was found late, and where the surface is folded though the image is not. Between two
+ * voxels it lies where their values say, up to four windows beyond the window; a uniform one where
+ * the values clipped to the window do.
  *
  * On a coarser level h everything is reduction^h times as long, as its voxels are. */
 typedef struct plc_parameters {

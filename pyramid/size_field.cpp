@@ -336,19 +336,19 @@ Status SizeField::build(const ImageView& image, float iso, double delta, const S
   return {};
 }
 
-void SizeField::lower(const std::array<int32_t, 3>& voxel, float most) {
-  const uint8_t least = code(static_cast<double>(std::max(most, finest_)));
+void SizeField::lower(const std::array<int32_t, 3>& voxel, float most, int32_t around) {
   std::array<int32_t, 3> low, high;
   for (size_t a = 0; a < 3; ++a) {
     const int32_t cell = voxel[a] / kCell - first_[a];
     if (cell < 0 || cell >= cells_[a]) return;  // beyond the room
-    low[a] = std::max(cell - 1, 0);
-    high[a] = std::min(cell + 1, cells_[a] - 1);
+    low[a] = std::max(cell - around, 0);
+    high[a] = std::min(cell + around, cells_[a] - 1);
   }
   for (size_t a = 0; a < 3; ++a) {
     low_[a] = std::min(low_[a], low[a]);
     high_[a] = std::max(high_[a], high[a]);
   }
+  const uint8_t least = code(static_cast<double>(std::max(most, finest_)));
   for (int32_t z = low[2]; z <= high[2]; ++z) {
     for (int32_t y = low[1]; y <= high[1]; ++y) {
       const size_t row =

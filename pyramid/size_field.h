@@ -46,11 +46,11 @@ class SizeField {
     return build(image, iso, delta, spec, executor, image.form.pad, whole_room(image));
   }
 
-  // In the cube of a voxel of the image, and in those beside it, sizes become `most` delta or less,
-  // but not less than the finest. bound_slope() brings those around them back within the slope:
-  // what comes out depends on all voxels that were lowered, not on their order nor on how often it
-  // was called.
-  void lower(const std::array<int32_t, 3>& voxel, float most);
+  // In the cube of a voxel of the image, and in `around` cubes on all sides of it, sizes become
+  // `most` delta or less, but not less than the finest. bound_slope() brings those around them back
+  // within the slope: what comes out depends on all voxels that were lowered, not on their order
+  // nor on how often it was called.
+  void lower(const std::array<int32_t, 3>& voxel, float most, int32_t around);
   void bound_slope();
 
   // By how much the size at a place of mesh space is above delta, in delta: what a mesh keeps with

@@ -129,12 +129,16 @@ Status Recovery::start_level() {
     }
     evolution_.notify("start");
   }
+  bool added = false;
+  if (fresh && mesh_.vertex_count() == 0 && mesh_.sizing != nullptr && level_ == 0) {
+    // Nothing of an iso-surface conforms that is thinner than its edges; bubbles do.
+    if (Status s = add_late_bubbles(added); !s.ok()) return s;
+  }
   if (mesh_.vertex_count() == 0 && !mesh_.is_patch()) return leave_level();
   estimate_.start_level();
   if (fresh) estimate_.add_start(record().operations);
   if (Status s = adapt(fresh && spec_.start.conforms()); !s.ok()) return s;
   if (Status s = build_gradient_image(); !s.ok()) return s;
-  bool added = false;
   if (!fresh || mesh_.is_patch()) {
     if (Status s = add_late_bubbles(added); !s.ok()) return s;
   }

@@ -131,11 +131,16 @@ Status Recovery::build_sizing() {
   return {};
 }
 
-// To those of late bubbles and folds, where the level has had some.
+// To those of late bubbles and folds, where the level has had some. A bubble starts around its
+// voxels; at folds the surface is already: sizes as fine around them, too, would bring it nearer by
+// 4 to 12 % with 19 to 36 % more vertices.
 void Recovery::lower_sizes() {
-  for (const VoxelSet* voxels : {&tried_, &folds_}) {
-    voxels->visit([&](const Voxel& voxel) { sizing_.field.lower(voxel, late_size(mesh_, voxel)); });
-  }
+  const auto lower = [this](const VoxelSet& voxels, int32_t around) {
+    voxels.visit(
+        [&](const Voxel& voxel) { sizing_.field.lower(voxel, late_size(mesh_, voxel), around); });
+  };
+  lower(tried_, 1);
+  lower(folds_, 0);
   sizing_.field.bound_slope();
 }
 

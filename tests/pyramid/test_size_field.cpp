@@ -141,16 +141,16 @@ TEST_CASE("sizes grow no faster than their slope, and are the same for any execu
 TEST_CASE("sizes are lowered where voxels are, in whatever order, and grow from there by the slope",
           "[size_field]") {
   const Image plane = image_of([](float x, float, float) { return x - kMiddle; });
-  const std::array<int32_t, 3> here{24, 12, 12}, there{24, 20, 4};
+  const std::array<int32_t, 3> here{24, 12, 12}, there{24, 20, 4};  // in cubes of two voxels
   plc::SizeField both = field_of(plane), twice = both;
   const plc::SizeField before = both;
-  both.lower(here, 1);
-  both.lower(there, 0.75F);
+  both.lower(here, 1, 0);
+  both.lower(there, 0.75F, 0);
   both.bound_slope();
-  twice.lower(there, 0.75F);
+  twice.lower(there, 0.75F, 0);
   twice.bound_slope();
-  twice.lower(here, 1);
-  twice.lower(there, 0.75F);
+  twice.lower(here, 1, 0);
+  twice.lower(there, 0.75F, 0);
   twice.bound_slope();
   float most = 0;
   for (float z = 0; z < kSide; z += 1.9F) {
@@ -162,12 +162,12 @@ TEST_CASE("sizes are lowered where voxels are, in whatever order, and grow from 
       }
     }
   }
-  CHECK(at(both, 24, 12, 12) == 1);
-  CHECK(at(both, 24, 20, 4) == 0.75F);
+  CHECK(at(both, 24.5F, 12.5F, 12.5F) == 1);
+  CHECK(at(both, 24.5F, 20.5F, 4.5F) == 0.75F);
   CHECK(at(before, 24, 12, 12) > 3.4F);
-  both.lower(there, 0.25F);
+  both.lower(there, 0.25F, 1);
   both.bound_slope();
-  CHECK(at(both, 24, 20, 4) == both.finest());
+  CHECK(at(both, 24, 20, 4) == both.finest());  // between two cubes
   CHECK(at(both, 24, 46, 46) == at(before, 24, 46, 46));
   CHECK(most > 0.08F);
   CHECK(most < 0.12F);

@@ -163,6 +163,16 @@ TEST_CASE("a start from the iso-surface has the sizes of its level", "[adaptive]
   CHECK(r.measures.volume == Approx(3.14159 * 256 * 1.3).epsilon(0.1));
 }
 
+TEST_CASE("where nothing of the iso-surface conforms bubbles start in what it is of", "[adaptive]") {
+  Run run = plate(0.25);
+  run.pyramid.levels = 0;
+  run.recovery.isos = {0.5};
+  run.recovery.start.init = plc::Init::kIso;
+  const Result r = recovered(std::move(run));
+  CHECK(r.records[0].late.bubbles > 0);
+  CHECK(r.measures.volume > 10);
+}
+
 TEST_CASE("an adaptive run that is saved and restored goes on with the same bits", "[adaptive]") {
   Run run = cube();
   run.recovery.sizes.emplace();

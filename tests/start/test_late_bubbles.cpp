@@ -173,7 +173,7 @@ TEST_CASE("a thin cavity gets a whole wall in an adaptive mesh", "[late_bubbles]
   sizing.object = {scene.view(), kIso, true};
   sizing.full_image = true;
   REQUIRE(sizing.field.build(scene.view(), kIso, kDelta, {}, schedule).ok());
-  for (int32_t x = 5; x <= 34; ++x) sizing.field.lower({x, 12, 12}, plc::kThinSize);
+  for (int32_t x = 5; x <= 34; ++x) sizing.field.lower({x, 12, 12}, plc::kThinSize, 1);
   sizing.field.bound_slope();
   Mesh mesh;
   mesh.sizing = &sizing;
