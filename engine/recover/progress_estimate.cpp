@@ -17,6 +17,8 @@ constexpr double kTransformation = 200, kVertex = 0.3;
 // The transformations of a round's first iteration count so many times: what comes before the round
 // - refinement, the search for late bubbles, their surfaces - takes nearly as long as they do.
 constexpr double kBeforeRound = 1.7;
+// ... and of an adaptive mesh, most of which only make edges shorter, so many.
+constexpr double kBeforeSizedRound = 0.4;
 // So many times the work of a level is that of the next finer one, which has three times the
 // vertices and takes a few more iterations.
 constexpr double kGrowth = 4;
@@ -47,10 +49,10 @@ void ProgressEstimate::start_level() {
   moves_ = operations_ = 0;
 }
 
-// Iso-surfaces were seen to be thinned out and brought to their sizes in 13 to 17 parts, the first
-// ones the longest, in about half of all the time.
+// Iso-surfaces were seen to be thinned out and brought to their sizes in 7 to 19 parts, the first
+// ones the longest, in a half to two thirds of all the time.
 double ProgressEstimate::at_start(int parts) {
-  constexpr double kMostOfAll = 0.7, kHalfOfIt = 6;
+  constexpr double kMostOfAll = 0.75, kHalfOfIt = 3;
   return kMostOfAll * parts / (parts + kHalfOfIt);
 }
 
@@ -66,16 +68,17 @@ void ProgressEstimate::start_round() {
   iterations_ = 0;
 }
 
-void ProgressEstimate::observe(const OperationCounts& level, double energy, double vertices) {
+void ProgressEstimate::observe(const OperationCounts& level, double energy, const Ahead& ahead) {
   ++iterations_;
   const bool first = iterations_ == 1;
-  const double moved = static_cast<double>(level.moves - moves_) + kVertex * vertices;
+  const double moved = static_cast<double>(level.moves - moves_) + kVertex * ahead.vertices;
   const double changed =
       kTransformation * static_cast<double>(level.transformations() - operations_);
   moves_ = level.moves;
   operations_ = level.transformations();
   // The very first iteration makes the mesh of the start even: it tells nothing of the others.
-  if (!(first && first_round())) work_ += moved + (first ? kBeforeRound : 1) * changed;
+  if (!(first && first_round()))
+    work_ += moved + (!first ? 1 : ahead.sized ? kBeforeSizedRound : kBeforeRound) * changed;
   const double share = share_of(iterations_);
   rate_ += ((first ? moved : moved + changed) - rate_) * share;
   recent_ += (std::log(std::max(energy, 1e-30)) - recent_) * share;
@@ -100,7 +103,7 @@ double ProgressEstimate::round_left(const Ahead& ahead) const {
 }
 
 double ProgressEstimate::add(const OperationCounts& level, double energy, const Ahead& ahead) {
-  observe(level, energy, ahead.vertices);
+  observe(level, energy, ahead);
   const double rest = round_left(ahead);
   double left = rest;
   double of_level = work_ + rest;

@@ -21,6 +21,7 @@ class ProgressEstimate {
     bool again = false;    // the last level may get late bubbles, and a round for them
     bool late = false;     // the round is one for them
     bool calm = false;     // the round ends here
+    bool sized = false;    // the mesh is adaptive
   };
 
   void start_level();
@@ -43,7 +44,7 @@ class ProgressEstimate {
 
  private:
   bool first_round() const { return before_ == 0; }
-  void observe(const OperationCounts& level, double energy, double vertices);
+  void observe(const OperationCounts& level, double energy, const Ahead& ahead);
   double round_left(const Ahead& ahead) const;
 
   int iterations_ = 0;       // of the round

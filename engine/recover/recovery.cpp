@@ -454,11 +454,13 @@ void Recovery::estimate_progress() {
   ahead.finer_levels = level_;
   ahead.late = round_.late;
   ahead.calm = r.converged;
-  // The last level is expected to get late bubbles if an earlier one has had some.
+  ahead.sized = mesh_.sizing != nullptr;
+  // The last level is expected to get late bubbles if an earlier one has had some; an adaptive mesh
+  // is folded somewhere.
   const bool late = std::any_of(records_.begin(), records_.end(), [](const LevelRecord& l) {
     return l.late.bubbles + l.late.cavities > 0;
   });
-  ahead.again = spec_.late_bubbles && late && !round_.late;
+  ahead.again = spec_.late_bubbles && (late || ahead.sized) && !round_.late;
   const double done = estimate_.add(r.operations, r.energy / spec_.epsilon, ahead);
   progress_ = {level_,   levels_, static_cast<int>(r.iterations),    mesh_.vertex_count(),
                r.energy, r.speed, std::max(progress_.fraction, done)};

@@ -214,7 +214,7 @@ TEMPLATE_TEST_CASE("a typed image is sampled and pulls as the same image in floa
   const int32_t sizes[][3] = {{37, 23, 11}, {2, 2, 2}, {2, 19, 3}};
   for (const auto& [m, n, p] : sizes) {
     for (const int32_t pad : {0, 1, 6}) {
-      TypedImage<TestType> image(m, n, p, pad, 11);
+      TypedImage<TestType> image(m, n, p, pad, 11, 0.2F);
       image.view.scale[0] = 0.9F;
       image.view.offset[1] = -3.25F;
       const std::vector<float> values = image.values();

@@ -21,7 +21,7 @@ TEMPLATE_TEST_CASE("rows of typed images have the bits of their single values on
                    "[kernels]", uint8_t, int16_t, uint16_t, float) {
   for (const int32_t pad : {0, 1, 6}) {
     for (const int32_t width : {2, 3, 16, 37}) {
-      const TypedImage<TestType> image(width, 5, 4, pad, 7);
+      const TypedImage<TestType> image(width, 5, 4, pad, 7, 0.2F);
       const auto columns = static_cast<size_t>(image.view.dims[0]);
       for (const SimdTarget simd : plc::available_simd_targets()) {
         for (int64_t z = 0; z < image.view.dims[2]; ++z) {

@@ -20,14 +20,14 @@ constexpr plc::ImageType image_type() {
 }
 
 // Random voxels of all of the type's range (floats: -20 .. 20, some of them NaN), a window that
-// some of them are beyond and some clipped, and a padding. The voxels fill their allocation: a
+// clips some of them, `beyond` farther out, and a padding. The voxels fill their allocation: a
 // sanitizer sees what is read beside them.
 template <typename Voxel>
 struct TypedImage {
   std::vector<Voxel> voxels;
   plc::ImageView view;
 
-  TypedImage(int32_t m, int32_t n, int32_t p, int32_t pad, uint32_t seed)
+  TypedImage(int32_t m, int32_t n, int32_t p, int32_t pad, uint32_t seed, float beyond = 0)
       : voxels(static_cast<size_t>(m) * static_cast<size_t>(n) * static_cast<size_t>(p)) {
     std::mt19937 random(seed);
     for (Voxel& v : voxels) {
@@ -46,7 +46,7 @@ struct TypedImage {
                       : std::is_same_v<Voxel, int16_t> ? -20000.3F
                                                        : 30.7F;
     const float width = sizeof(Voxel) == 1 ? 180.1F : sizeof(Voxel) == 2 ? 33000.7F : 25.3F;
-    view.form = {image_type<Voxel>(), pad, 0.375F, low, 1 / width, 0.2F};
+    view.form = {image_type<Voxel>(), pad, 0.375F, low, 1 / width, beyond};
   }
 
   // The whole image as floats, its padding included.
