@@ -1,5 +1,6 @@
 // Scalar twins of kernels/image_force.h, image_rows.h, blend_rows.h, gradient_force.h, voxels.h and
 // separable.h.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

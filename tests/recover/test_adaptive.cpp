@@ -106,11 +106,13 @@ TEST_CASE("a steep image is met where it crosses iso, not where it does once cli
     return std::sqrt((x - 21.4) * (x - 21.4) + (y - 21.6) * (y - 21.6) + (z - 21.3) * (z - 21.3));
   };
   Run run = run_of("ball", {44, 44, 44}, [](double, double, double) { return 0.0; });
-  for (size_t i = 0; i < run.volume.values.size(); ++i) {
-    const double d =
-        kRadius - radius_at(static_cast<double>(i % 44), static_cast<double>(i / 44 % 44),
-                            static_cast<double>(i / 44 / 44));
-    run.volume.values[i] = static_cast<float>(0.5 + 2 * d);
+  float* value = run.volume.values.data();
+  for (int z = 0; z < 44; ++z) {
+    for (int y = 0; y < 44; ++y) {
+      for (int x = 0; x < 44; ++x) {
+        *value++ = static_cast<float>(0.5 + 2 * (kRadius - radius_at(x, y, z)));
+      }
+    }
   }
   const Result r = recovered(std::move(run));
   double squared = 0;
@@ -163,7 +165,8 @@ TEST_CASE("a start from the iso-surface has the sizes of its level", "[adaptive]
   CHECK(r.measures.volume == Approx(3.14159 * 256 * 1.3).epsilon(0.1));
 }
 
-TEST_CASE("where nothing of the iso-surface conforms bubbles start in what it is of", "[adaptive]") {
+TEST_CASE("where nothing of the iso-surface conforms bubbles start in what it is of",
+          "[adaptive]") {
   Run run = plate(0.25);
   run.pyramid.levels = 0;
   run.recovery.isos = {0.5};
