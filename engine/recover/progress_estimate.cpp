@@ -9,7 +9,8 @@ namespace plc {
 
 namespace {
 
-// All constants are fitted to 24 runs of one thread on real images, uniform, adaptive and direct.
+// Constants are fitted to 24 runs of one thread on real images, uniform, adaptive and direct, where
+// nothing else is said.
 //
 // The unit of work is the movement of one vertex. A transformation, with all the checks around it,
 // takes kTransformation of it, and every vertex, asleep or not, kVertex in each iteration.
@@ -17,7 +18,8 @@ constexpr double kTransformation = 200, kVertex = 0.3;
 // The transformations of a round's first iteration count so many times: what comes before the round
 // - refinement, the search for late bubbles, their surfaces - takes nearly as long as they do.
 constexpr double kBeforeRound = 1.7;
-// ... and of an adaptive mesh, most of which only make edges shorter, so many.
+// ... and of an adaptive mesh, most of which only make edges shorter, so many; this and at_start()
+// are fitted to three runs.
 constexpr double kBeforeSizedRound = 0.4;
 // So many times the work of a level is that of the next finer one, which has three times the
 // vertices and takes a few more iterations.
@@ -76,9 +78,9 @@ void ProgressEstimate::observe(const OperationCounts& level, double energy, cons
       kTransformation * static_cast<double>(level.transformations() - operations_);
   moves_ = level.moves;
   operations_ = level.transformations();
+  const double times = !first ? 1 : ahead.sized ? kBeforeSizedRound : kBeforeRound;
   // The very first iteration makes the mesh of the start even: it tells nothing of the others.
-  if (!(first && first_round()))
-    work_ += moved + (!first ? 1 : ahead.sized ? kBeforeSizedRound : kBeforeRound) * changed;
+  if (!(first && first_round())) work_ += moved + times * changed;
   const double share = share_of(iterations_);
   rate_ += ((first ? moved : moved + changed) - rate_) * share;
   recent_ += (std::log(std::max(energy, 1e-30)) - recent_) * share;

@@ -130,8 +130,9 @@ Status Recovery::start_level() {
     evolution_.notify("start");
   }
   bool added = false;
-  if (fresh && mesh_.vertex_count() == 0 && mesh_.sizing != nullptr && level_ == 0) {
-    // Nothing of an iso-surface conforms that is thinner than its edges; bubbles do.
+  if (mesh_.vertex_count() == 0 && mesh_.sizing != nullptr && level_ == 0 &&
+      spec_.start.init == Init::kIso) {
+    // Of an iso-surface that is thinner than its edges nothing may be left once it conforms.
     if (Status s = add_late_bubbles(added); !s.ok()) return s;
   }
   if (mesh_.vertex_count() == 0 && !mesh_.is_patch()) return leave_level();
