@@ -393,7 +393,9 @@ typedef struct plc_parameters {
   double max_move;         /* bound of a vertex's movement per iteration, in delta, (0, 1] */
   plc_bound bound;
   plc_anisotropy anisotropy;
-  double epsilon;     /* kinetic energy along the normals below which a level has converged, > 0 */
+  double epsilon;     /* kinetic energy along the normals below which a level has converged, > 0. No
+                         vertex counts more than 30 of it in a direct run of an adaptive mesh from
+                         PLC_INIT_ISO, where what moves for long draws back from thin parts */
   double calm_speed;  /* also no vertex may be as fast, in delta per time; 0: not asked */
   int max_iterations; /* per level, >= 1; I_0 may take as many again after late bubbles */
   int late_bubbles;   /* 1: bubbles start in what a level's surface has missed; 0: as the paper.
@@ -435,7 +437,8 @@ typedef struct plc_progress {
   int iteration; /* of this level, from 1; 0, without vertices, while it makes the surface to start
                     from, of PLC_INIT_ISO, _MASK and _MESH */
   int64_t vertices;
-  double energy;   /* kinetic energy along the normals, in m (delta / dt)^2 (5.1) */
+  double energy;   /* kinetic energy along the normals, in m (delta / dt)^2 (5.1), as epsilon is
+                      compared with it */
   double speed;    /* of the fastest vertex, in delta per time */
   double fraction; /* an estimate of what is done, 0 .. 1, never falling */
   double seconds;  /* of evolution so far; of a run, within all calls on it */

@@ -99,6 +99,7 @@ class MoveLanes {
   HWY_INLINE explicit MoveLanes(const MoveBound& bound)
       : length_(hn::Set(FloatTag(), bound.length)),
         speed_(hn::Set(FloatTag(), bound.speed)),
+        counted_(hn::Set(FloatTag(), bound.counted)),
         free_turns_(hn::Set(IntTag(), static_cast<int32_t>(bound.free_turns))),
         swinging_turns_(hn::Set(IntTag(), static_cast<int32_t>(bound.swinging_turns))) {}
 
@@ -122,7 +123,7 @@ class MoveLanes {
     store_packed(Floats3{before.x, before.y, before.z} + by, before.w, s.moved_to + i);
     hn::StoreU(hn::Add(hn::LoadU(d, s.path + i), hn::Sqrt(squared)), d, s.path + i);
     longest_ = hn::IfThenElse(hn::Gt(squared, longest_), squared, longest_);
-    const Floats along = dot(by, load3(s.normal, i));
+    const Floats along = hn::Min(hn::Abs(dot(by, load3(s.normal, i))), counted_);
     energy_.add(part, square_of(low_doubles(along)), square_of(high_doubles(along)));
   }
   HWY_INLINE Movement total() const { return {energy_.total(), greatest(longest_)}; }
@@ -157,7 +158,7 @@ class MoveLanes {
     return hn::BitCast(FloatTag(), hn::IfThenElseZero(moves, power));
   }
 
-  Floats length_, speed_;
+  Floats length_, speed_, counted_;
   IntLanes free_turns_, swinging_turns_;
   Floats longest_ = hn::Zero(FloatTag());
   LaneSums energy_;

@@ -1,6 +1,7 @@
 // Newton's law of motion (4) by Runge-Kutta 4: stage update, movement bound, move (3.5, 3.6).
 #pragma once
 #include <cstdint>
+#include <limits>
 
 #include "kernels/blocks.h"
 #include "kernels/float3s.h"
@@ -62,10 +63,12 @@ struct MoveBound {
   uint32_t free_turns;
   // With more turns `speed` is 0.
   uint32_t swinging_turns;
+  // As how long |d . n| counts in the energy, at most.
+  float counted = std::numeric_limits<float>::infinity();
 };
 struct Movement {
-  double energy = 0;   // sum of (d . n)^2, in the order of lane_sum.h: the kinetic energy along the
-                       // normals (5.1) up to m / (2 s (delta dt)^2)
+  double energy = 0;  // sum of min(|d . n|, counted)^2, in the order of lane_sum.h: the kinetic
+                      // energy along the normals (5.1) up to m / (2 s (delta dt)^2)
   float longest2 = 0;  // the greatest |d|^2
 };
 

@@ -157,11 +157,13 @@ Triple shortened(const Triple& a, float longest) {
 
 // The sums of move().
 struct Sums {
+  float counted;
   double lane[kRingLanes] = {};
   float longest = 0;
   void add(const Triple& by, const Triple& normal, uint32_t i) {
-    const auto along = static_cast<double>(dot(by, normal));
-    lane[i % kRingLanes] += along * along;
+    const float along = std::abs(dot(by, normal));
+    const auto counts = static_cast<double>(along < counted ? along : counted);
+    lane[i % kRingLanes] += counts * counts;
     longest = dot(by, by) > longest ? dot(by, by) : longest;
   }
 };
@@ -205,7 +207,7 @@ float max_squared(const ConstFloat3s& moved, const Blocks& blocks) {
 
 Movement move(const MoveBound& bound, const Float3s& moved, const ConstFloat3s& new_velocity,
               const MoveStreams& streams, const Blocks& blocks) {
-  Sums sums;
+  Sums sums{bound.counted};
   for_vertices(blocks, [&](uint32_t i) {
     move_vertex(bound, at(moved, i), at(new_velocity, i), moved, streams, i, sums);
   });
@@ -222,7 +224,7 @@ void guided_stage(int stage, const Rk4Coefficients& coefficients, const SurfaceF
 Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& forces,
                      const Rk4Streams& streams, const MoveBound& bound, const MoveStreams& ends,
                      const Blocks& blocks) {
-  Sums sums;
+  Sums sums{bound.counted};
   for_forces(3, forces, streams, blocks, [&](uint32_t i, const Triple& force) {
     Rk4State end;
     rk4_vertex(3, coefficients, streams, force, i, end);

@@ -195,6 +195,12 @@ inline constexpr int64_t kPlaceVoxels = 27;
 // What still moves is not missed yet: a surface is searched when its energy is below this many
 // epsilon.
 inline constexpr double kLateEnergy = 10;
+// What a vertex counts in the energy at most, in epsilon, where an adaptive mesh starts from the
+// iso-surface of the full image: all is where it belongs then, and what still moves draws back from
+// parts thinner than it can hold, fast and for long. Of an abdominal CT a hundredth of the vertices
+// had nine tenths of the energy for 100 iterations, which ended no nearer to the iso-surface.
+// Surfaces that come from farther away end when their fronts do.
+inline constexpr double kMostEnergy = 30;
 // Iterations before an adaptive mesh is searched at first: the energy is near 0 from rest.
 inline constexpr int kEarlySearch = 5;
 // Times that I_0 is searched again after it has converged: what a bubble grows into may hide more.

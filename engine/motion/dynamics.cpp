@@ -53,8 +53,12 @@ float stable_time_step(const Model& model, float stiffness) {
   return std::min(model.time_step, static_cast<float>(std::min(longest, damped)));
 }
 
-Dynamics::Dynamics(Mesh& mesh, const Schedule& schedule, const Model& model)
-    : mesh_(mesh), schedule_(schedule), model_(model), time_step_(stable_time_step(model)) {}
+Dynamics::Dynamics(Mesh& mesh, const Schedule& schedule, const Model& model, float counted)
+    : mesh_(mesh),
+      schedule_(schedule),
+      model_(model),
+      counted_(counted),
+      time_step_(stable_time_step(model)) {}
 
 void Dynamics::resize(const Guide& guide) {
   const size_t n = mesh_.padded(), room = mesh_.room();
@@ -376,7 +380,8 @@ kernels::MoveStreams Dynamics::move_streams() {
 
 kernels::MoveBound Dynamics::move_bound() const {
   const float longest = model_.max_move * static_cast<float>(mesh_.delta);
-  return {longest, longest / time_step_, kFreeTurns, kSwingingTurns};
+  return {longest, longest / time_step_, kFreeTurns, kSwingingTurns,
+          counted_ * static_cast<float>(mesh_.delta)};
 }
 
 void Dynamics::measure_rest_length(const Guide& guide) {

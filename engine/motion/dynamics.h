@@ -1,5 +1,6 @@
 // Forces, Newton's law of motion by Runge-Kutta 4, movement bound and energy (3.5-3.8, 5.1).
 #pragma once
+#include <limits>
 #include <vector>
 
 #include "engine/base/defaults.h"
@@ -58,7 +59,9 @@ float stable_time_step(const Model& model, float stiffness = 0);
 // 72 bytes per vertex in a run of curvature and image, and 4 per block of 16.
 class Dynamics {
  public:
-  Dynamics(Mesh& mesh, const Schedule& schedule, const Model& model);
+  // counted: how far along its normal, in delta, a vertex counts as moved in the energy, at most.
+  Dynamics(Mesh& mesh, const Schedule& schedule, const Model& model,
+           float counted = std::numeric_limits<float>::infinity());
 
   // Moves every vertex once; displacement, velocity, normal and path of the mesh are written. Fails
   // where the user's force does; positions, velocities and paths are then as they were.
@@ -132,6 +135,7 @@ class Dynamics {
   Mesh& mesh_;
   const Schedule& schedule_;
   Model model_;
+  float counted_;
   float time_step_;  // of this step
   float rest_length_ = 0;
   double energy_ = 0;

@@ -26,7 +26,7 @@ Evolution::Evolution(Mesh& mesh, const Schedule& schedule, const Model& model,
       schedule_(schedule),
       slow_vertices_(options.slow_vertices),
       sleep_(mesh, schedule, options.speeds),
-      dynamics_(mesh, schedule, model),
+      dynamics_(mesh, schedule, model, options.counted),
       detection_(mesh, schedule),
       guard_(mesh, schedule),
       resolution_(mesh, schedule, detection_) {}

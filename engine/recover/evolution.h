@@ -1,5 +1,7 @@
 // One iteration of deformation: the procedure Evolution of figure 9, as a table of passes.
 #pragma once
+#include <limits>
+
 #include "engine/base/schedule.h"
 #include "engine/base/statistics.h"
 #include "engine/detect/detection.h"
@@ -14,7 +16,8 @@ namespace plc {
 
 // Beyond the model of the paper.
 struct EvolutionOptions {
-  Sleep::Speeds speeds{};     // nothing sleeps, nothing freezes
+  Sleep::Speeds speeds{};                                  // nothing sleeps, nothing freezes
+  float counted = std::numeric_limits<float>::infinity();  // see Dynamics
   bool slow_vertices = true;  // 3.6; false: every vertex is checked in every iteration
 };
 

@@ -15,13 +15,17 @@ namespace plc {
 
 namespace {
 
-EvolutionOptions evolution_options(const RecoverySpec& spec) {
+EvolutionOptions evolution_options(const RecoverySpec& spec, int levels) {
   EvolutionOptions options;
   // The speed along the normal that every vertex would have at the energy epsilon.
   const double speed = std::sqrt(2 * spec.epsilon / static_cast<double>(spec.model.mass)) *
                        static_cast<double>(stable_time_step(spec.model));
   if (spec.sleeping) options.speeds.calm = static_cast<float>(kCalmSpeed * speed);
   options.speeds.turn = static_cast<float>(kTurnSpeed * speed);
+  if (spec.sizes && spec.start.init == Init::kIso && levels == 0) {
+    constexpr double kLeast = 1e-30;  // its square is something in double precision
+    options.counted = static_cast<float>(std::max(std::sqrt(kMostEnergy) * speed, kLeast));
+  }
   options.slow_vertices = spec.slow_vertices;
   return options;
 }
@@ -36,8 +40,8 @@ Recovery::Recovery(Pyramid pyramid, RecoverySpec spec, const Schedule& schedule,
       hooks_(std::move(hooks)),
       mesh_(mesh),
       records_(records),
-      evolution_(mesh, schedule, spec_.model, evolution_options(spec_)),
       levels_(static_cast<int>(pyramid_.levels.size()) - 1),
+      evolution_(mesh, schedule, spec_.model, evolution_options(spec_, levels_)),
       level_(levels_) {
   evolution_.set_observer(hooks_.pass);
 }

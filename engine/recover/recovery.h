@@ -204,8 +204,8 @@ class Recovery {
   RecoveryHooks hooks_;
   Mesh& mesh_;
   std::vector<LevelRecord>& records_;
-  Evolution evolution_;
   int levels_;
+  Evolution evolution_;
   int level_;         // h
   int entered_ = -1;  // the level of space_ and guide_; -1: none yet
   Phase phase_ = Phase::kStart;

@@ -20,7 +20,7 @@ namespace kernels = plc::kernels;
 namespace scalar = plc::kernels::scalar;
 
 constexpr kernels::Rk4Coefficients kNewton{1.0F / 0.7F, 0.45F, 0.9F};
-constexpr kernels::MoveBound kBound{2.5F, 3.5F, 20, 10};
+constexpr kernels::MoveBound kBound{2.5F, 3.5F, 20, 10, 1.5F};
 constexpr uint32_t kBlocks = 240;  // more than kernels fetch ahead
 
 // A stage of a step in full swing.

@@ -176,7 +176,7 @@ struct Mover {
   }
 };
 
-constexpr MoveBound kBound{1.5F, 2.5F, 20, 10};
+constexpr MoveBound kBound{1.5F, 2.5F, 20, 10, 0.7F};
 
 }  // namespace
 
@@ -238,7 +238,10 @@ TEST_CASE("moving adds the displacement, lengthens the path and measures the mov
   const Mover before(4096);
   Mover after(4096);
   after.turns.assign(4096, 20);
-  after.run(scalar::move, {100, 100, 20, 20}, Blocks::range(32, 4080));
+  constexpr double kCounted = 1.25;
+  after.run(scalar::move, {100, 100, 20, 20, static_cast<float>(kCounted)},
+            Blocks::range(32, 4080));
+  int limited = 0;
   double energy = 0, longest = 0;
   for (uint32_t i = 32; i < 4080; ++i) {
     const auto& d = before.all.d;
@@ -251,10 +254,13 @@ TEST_CASE("moving adds the displacement, lengthens the path and measures the mov
     REQUIRE(double{after.path[i]} == Approx(double{before.path[i]} + length).margin(1e-5));
     double along = 0;
     for (int a = 0; a < 3; ++a) along += double{d[a][i]} * double{before.all.f[a][i]};
+    limited += std::abs(along) > kCounted ? 1 : 0;
+    along = std::min(std::abs(along), kCounted);
     energy += along * along;
     longest = std::max(longest, length);
   }
   CHECK(after.movement.energy == Approx(energy).epsilon(1e-6));
+  CHECK((limited > 500 && limited < 3500));
   CHECK(double{after.movement.longest2} == Approx(longest * longest).epsilon(1e-6));
   CHECK(after.path[31] == before.path[31]);
 }
