@@ -67,8 +67,8 @@ struct MoveBound {
   float counted = std::numeric_limits<float>::infinity();
 };
 struct Movement {
-  double energy = 0;  // sum of min(|d . n|, counted)^2, in the order of lane_sum.h: the kinetic
-                      // energy along the normals (5.1) up to m / (2 s (delta dt)^2)
+  double energy = 0;   // sum of min(|d . n|, counted)^2, in the order of lane_sum.h: the kinetic
+                       // energy along the normals (5.1) up to m / (2 s (delta dt)^2)
   float longest2 = 0;  // the greatest |d|^2
 };
 

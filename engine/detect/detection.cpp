@@ -28,14 +28,25 @@ void Detection::list_all() {
 
 // A vertex is due before it has moved farther than the slack, and is entered anew then.
 void Detection::update_hash() {
-  const bool many = due().size() + hash_.inserted() > mesh_.slots() / kHashInsertions;
-  if (all_due_ || many || !hash_valid_) {
-    const auto delta = static_cast<float>(mesh_.delta);
-    hash_.build(mesh_, kHashCell * delta, executor_, kHashSlack * delta);
+  if (all_due_ || !hash_valid_ || is_many(due().size() + hash_.inserted())) {
+    build_hash();
     hash_valid_ = true;
     return;
   }
   hash_.insert(mesh_, due(), executor_);
+}
+
+void Detection::shorten_hash() {
+  if (is_many(hash_.inserted())) build_hash();
+}
+
+void Detection::build_hash() {
+  const auto delta = static_cast<float>(mesh_.delta);
+  hash_.build(mesh_, kHashCell * delta, executor_, kHashSlack * delta);
+}
+
+bool Detection::is_many(size_t entries) const {
+  return entries > mesh_.slots() / kHashInsertions;
 }
 
 void Detection::search_near_all() {

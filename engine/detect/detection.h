@@ -54,8 +54,14 @@ class Detection {
   // Holds every living vertex; who moves, makes or deletes one tells it.
   SpatialHash& hash() { return hash_; }
   const SpatialHash& hash() const { return hash_; }
+  // Builds the hash anew where so much has been told to it since that its searches take longer for
+  // it. They find the same.
+  void shorten_hash();
 
  private:
+  void build_hash();
+  bool is_many(size_t entries) const;
+
   Mesh& mesh_;
   const Executor& executor_;
   DueVertices due_;

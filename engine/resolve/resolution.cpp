@@ -151,6 +151,7 @@ void Resolution::resolve_edges(OperationCounts& counts) {
   for (int round = 0; round < kMaxRounds; ++round) {
     unique(edge_queue_);
     if (edge_queue_.empty()) return;
+    detection_.shorten_hash();
     const Vector<Candidate> candidates = edge_candidates(edge_queue_);
     edge_queue_.clear();
     apply_round(candidates, edge_queue_, counts);
