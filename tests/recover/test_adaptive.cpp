@@ -92,7 +92,7 @@ Run sheets() {
   return run_of("sheets", {48, 48, 48}, [](double x, double y, double z) {
     const double waves = std::cos(0.31 * x + 0.17 * y + 0.5) + std::cos(0.29 * y - 0.21 * z + 1.3) +
                          std::cos(0.33 * z + 0.13 * x - 0.7);
-    return std::min(0.3 - std::abs(waves), 18 - std::hypot(x - 23.5, y - 23.5, z - 23.5));
+    return std::min(0.35 - 1.5 * std::abs(waves), 18 - std::hypot(x - 23.5, y - 23.5, z - 23.5));
   });
 }
 
@@ -187,12 +187,8 @@ TEST_CASE("where nothing of the iso-surface conforms bubbles start in what it is
 TEST_CASE(
     "a surface from the iso-surface is at rest when only what draws back from thin parts moves",
     "[adaptive]") {
-  const Run run = direct(sheets());
-  const Result r = recovered(run);
-  CHECK(r.records[0].iterations < 100);  // 319 before a vertex counted no more than kMostEnergy
-  // Of one vertex, in delta per time.
-  const double most = std::sqrt(2 * plc::kMostEnergy * run.recovery.epsilon);
-  CHECK(r.records[0].speed > most);
+  const Result r = recovered(direct(sheets()));
+  CHECK(r.records[0].iterations < 400);  // 141; 1175 where a vertex counts all its energy
 }
 
 TEST_CASE("an adaptive run that is saved and restored goes on with the same bits", "[adaptive]") {
