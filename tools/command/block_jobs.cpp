@@ -19,10 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void add_folder(CLI::App& app, std::string& folder) {
-  app.add_option("DIR", folder, "Folder of a plan by blocks")->required()->type_name("");
-}
-
 bool stdin_is_closed() {
   pollfd in{STDIN_FILENO, 0, 0};
   return poll(&in, 1, 0) > 0 && (in.revents & (POLLHUP | POLLERR)) != 0;
@@ -41,8 +37,12 @@ void read_task(const std::string& line, const BlockPlan& plan, int& step, int64_
 
 }  // namespace
 
+void add_block_folder(CLI::App& app, std::string& folder) {
+  app.add_option("DIR", folder, "Folder of a plan by blocks")->required()->type_name("");
+}
+
 void add_block_status(CLI::App& app, BlockOptions& options) {
-  add_folder(app, options.folder);
+  add_block_folder(app, options.folder);
   app.add_flag("--json", options.json, "JSON instead of lines, with the blocks that are left");
 }
 
@@ -56,7 +56,7 @@ void add_block_submit(CLI::App& app, BlockOptions& options) {
          "slurm")
       ->required()
       ->type_name("");
-  add_folder(app, submit.folder);
+  add_block_folder(app, submit.folder);
   app.add_option_function<std::string>(
          "--cores", [&submit](const std::string& s) { submit.cores = at_least(1, "--cores", s); },
          "Cores of a task")

@@ -2,6 +2,7 @@
 // told.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <string>
 
 #include "tools/blocks/block_task.h"
 #include "tools/command/command_blocks.h"
@@ -9,7 +10,8 @@
 
 namespace plc::tools {
 
-// Declare them; parsing fills `options`.
+// Declare them; parsing fills `folder` and `options`.
+void add_block_folder(CLI::App& app, std::string& folder);
 void add_block_status(CLI::App& app, BlockOptions& options);
 void add_block_submit(CLI::App& app, BlockOptions& options);
 

@@ -224,12 +224,8 @@ int run_precomputed(BlockOptions& options) {
   return 0;
 }
 
-void add_folder(CLI::App& app, std::string& folder) {
-  app.add_option("DIR", folder, "Folder of a plan by blocks")->required()->type_name("");
-}
-
 void add_run(CLI::App& app, BlockOptions& options) {
-  add_folder(app, options.folder);
+  add_block_folder(app, options.folder);
   const auto text = [&](const std::string& name, const std::string& type,
                         const std::string& fallback, const std::string& meaning, auto read) {
     app.add_option_function<std::string>(name, read, meaning)
@@ -254,7 +250,7 @@ void add_run(CLI::App& app, BlockOptions& options) {
 }
 
 void add_precomputed(CLI::App& app, BlockOptions& options) {
-  add_folder(app, options.folder);
+  add_block_folder(app, options.folder);
   PrecomputedOptions& to = options.precomputed;
   app.add_option("-o,--output", to.output, "Folder of the meshes; made where it is not there")
       ->required()
@@ -289,7 +285,7 @@ void add_block_options(CLI::App& command, BlockOptions& options) {
           options);
   CLI::App* check =
       command.add_subcommand("check", "Prove, block by block, that all are one valid surface");
-  add_folder(*check, options.folder);
+  add_block_folder(*check, options.folder);
   check->add_flag("--json", options.json, "JSON instead of a table");
   check->add_flag("--quiet", options.quiet, "No progress");
   add_block_status(
@@ -299,7 +295,7 @@ void add_block_options(CLI::App& command, BlockOptions& options) {
       *command.add_subcommand("submit", "Run what is left as job arrays of Slurm, one a step"),
       options);
   CLI::App* mesh = command.add_subcommand("mesh", "Write the surface of all blocks as one mesh");
-  add_folder(*mesh, options.folder);
+  add_block_folder(*mesh, options.folder);
   mesh->add_option("-o,--output", options.mesh, mesh_suffixes(MeshUse::kWritten))
       ->required()
       ->type_name("FILE");

@@ -26,7 +26,7 @@ CLI::Option* add_text(CLI::App& app, const std::string& name, const std::string&
       ->default_str(fallback);
 }
 
-void add_folder(CLI::App& app, std::string& folder) {
+void add_cohort_folder(CLI::App& app, std::string& folder) {
   app.add_option("DIR", folder, "Folder of a cohort that has been planned")
       ->required()
       ->type_name("");
@@ -74,7 +74,7 @@ void add_plan(CLI::App& app, CohortOptions& options) {
 }
 
 void add_run(CLI::App& app, RunOptions& run) {
-  add_folder(app, run.folder);
+  add_cohort_folder(app, run.folder);
   add_text(app, "--task", "I/N", "1/1", "The I-th of N shares, I from 1",
            [&run](const std::string& s) { to_share("--task", s, run.part, run.parts); });
   app.add_option("--scans", run.scans, "Only scans named in this file, a name on each line")
@@ -102,7 +102,7 @@ void add_submit(CLI::App& app, SubmitOptions& submit) {
          "slurm")
       ->required()
       ->type_name("");
-  add_folder(app, submit.folder);
+  add_cohort_folder(app, submit.folder);
   add_text(app, "--minutes", "M", "60", "What a task is to take, above 0",
            [&submit](const std::string& s) { submit.minutes = above_zero("--minutes", s); });
   add_text(app, "--cores", "N", "1, more for scans that would not fit in a task", "Cores of a task",
@@ -178,10 +178,10 @@ void add_cohort_options(CLI::App& command, CohortOptions& options) {
   add_run(*command.add_subcommand("run", "Extract the scans of a cohort, or a share of them"),
           options.run);
   CLI::App* status = command.add_subcommand("status", "Tell what is done, and when the rest is");
-  add_folder(*status, options.folder);
+  add_cohort_folder(*status, options.folder);
   status->add_flag("--json", options.json, "JSON instead of lines");
   CLI::App* collect = command.add_subcommand("collect", "Write one table of all that is done");
-  add_folder(*collect, options.folder);
+  add_cohort_folder(*collect, options.folder);
   collect->add_option("-o,--output", options.table, "Table to write, columns between tabs")
       ->type_name("FILE")
       ->default_str("DIR/cohort.tsv");

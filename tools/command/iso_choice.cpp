@@ -10,7 +10,7 @@ namespace plc::tools {
 
 namespace {
 
-constexpr const char* kExpected =
+constexpr const char* kIsoExpected =
     "finite numbers, otsu, or percentiles such as p95, separated by commas";
 
 IsoChoice to_iso_choice(const std::string& option, const std::string& text,
@@ -22,10 +22,10 @@ IsoChoice to_iso_choice(const std::string& option, const std::string& text,
   try {
     number = to_number(option, percentile ? word.substr(1) : word);
   } catch (const CLI::ValidationError&) {
-    refuse_value(option, text, kExpected);
+    refuse_value(option, text, kIsoExpected);
   }
   if (!percentile) return {word, Kind::kNumber, number};
-  if (!(number >= 0 && number <= 100)) refuse_value(option, text, kExpected);
+  if (!(number >= 0 && number <= 100)) refuse_value(option, text, kIsoExpected);
   return {word, Kind::kPercentile, number};
 }
 

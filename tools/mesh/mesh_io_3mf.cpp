@@ -12,7 +12,7 @@
 namespace plc::tools {
 namespace {
 
-constexpr const char* kTypes =
+constexpr const char* kContentTypes =
     "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
     "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
     "<Default Extension=\"rels\" "
@@ -117,7 +117,7 @@ class Zip {
 
 void write_3mf(AtomicFile& file, const TriangleMesh& mesh) {
   Zip zip(file);
-  zip.add("[Content_Types].xml", kTypes);
+  zip.add("[Content_Types].xml", kContentTypes);
   zip.add("_rels/.rels", kRelations);
   zip.add("3D/3dmodel.model", model_of(mesh));
   zip.close();

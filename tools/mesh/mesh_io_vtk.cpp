@@ -29,7 +29,7 @@ double load_big(const char* at) {
   return static_cast<double>(load_value<T>(at, true));
 }
 
-constexpr ValueType kTypes[] = {
+constexpr ValueType kValueTypes[] = {
     {"float", 4, load_big<float>},           {"double", 8, load_big<double>},
     {"int", 4, load_big<int32_t>},           {"unsigned_int", 4, load_big<uint32_t>},
     {"short", 2, load_big<int16_t>},         {"unsigned_short", 2, load_big<uint16_t>},
@@ -39,9 +39,9 @@ constexpr ValueType kTypes[] = {
     {"unsigned_long", 8, load_big<uint64_t>}};
 
 const ValueType* find_type(std::string_view name) {
-  const auto* const found = std::find_if(std::begin(kTypes), std::end(kTypes),
+  const auto* const found = std::find_if(std::begin(kValueTypes), std::end(kValueTypes),
                                          [&](const ValueType& t) { return t.name == name; });
-  return found == std::end(kTypes) ? nullptr : found;
+  return found == std::end(kValueTypes) ? nullptr : found;
 }
 
 struct Cells {
