@@ -13,14 +13,14 @@
 namespace plc::tools {
 namespace {
 
-struct Faces {
+struct CellArrays {
   VtpArray connectivity, offsets;
 };
 
 struct Piece {
   VtpArray points, normals;
   std::vector<VtpArray> scalars;
-  Faces polygons, strips;
+  CellArrays polygons, strips;
 };
 
 // Finds the arrays of a file. Only what is before the appended data is XML: raw data would not be.
@@ -109,7 +109,7 @@ class VtpParser : public XmlVisitor {
       }
       return &piece.scalars.emplace_back();
     }
-    Faces* cells = section_ == "Polys"    ? &piece.polygons
+    CellArrays* cells = section_ == "Polys"    ? &piece.polygons
                    : section_ == "Strips" ? &piece.strips
                                           : nullptr;
     if (cells == nullptr) return nullptr;
@@ -176,7 +176,7 @@ class VtpReader {
     return vtp_values(path_, file_.encoding(), file_.appended(), array, left_);
   }
   template <typename Visit>
-  void for_each_cell(const Faces& cells, int64_t base, int64_t end, const Visit& visit) {
+  void for_each_cell(const CellArrays& cells, int64_t base, int64_t end, const Visit& visit) {
     const std::vector<double> connectivity = values(cells.connectivity);
     std::vector<int64_t> corners;
     size_t begin = 0;
