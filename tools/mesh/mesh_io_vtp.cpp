@@ -110,8 +110,8 @@ class VtpParser : public XmlVisitor {
       return &piece.scalars.emplace_back();
     }
     CellArrays* cells = section_ == "Polys"    ? &piece.polygons
-                   : section_ == "Strips" ? &piece.strips
-                                          : nullptr;
+                        : section_ == "Strips" ? &piece.strips
+                                               : nullptr;
     if (cells == nullptr) return nullptr;
     if (name == "connectivity") return &cells->connectivity;
     return name == "offsets" ? &cells->offsets : nullptr;
