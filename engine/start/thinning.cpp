@@ -127,18 +127,20 @@ class Thinning {
   static constexpr uint8_t kAtBorder = 1;  // of its block, which it has not to itself
   static constexpr uint8_t kGrown = 2;     // something was merged into it
   static constexpr uint8_t kEmbedded = 4;  // the faces around it do not meet each other
+  static constexpr uint8_t kSeen = 8;      // whether they do has been looked at
   using Ring = Vector<uint32_t>;           // neighbours
   struct Face {
     std::array<uint32_t, 3> corner;
-    bool changed;
-    std::array<bool, 3> embedded;  // whether that is certain of the corner
+    bool changed;  // in this stage
+    bool fresh;    // may meet others that have been listed before, or are not fresh either
+    bool meets;
   };
   // What a task needs for a block.
   struct Scratch {
     Ring ring;
     Vector<HalfEdges::HalfEdge> half_edges;  // as they were, of all faces within the block
     Vector<uint32_t> out;                    // ... of its vertices
-    Vector<Face> faces;
+    Vector<Face> faces, before;  // ascending by their first corners; what was listed last
     Vector<double> xyz;
     Vector<uint32_t> abc, ids;
     FaceTree tree;
@@ -158,9 +160,10 @@ class Thinning {
   // in a step, and does so no more. So this ends.
   void thin_out(uint32_t block, Scratch& s) {
     save(block, s);
+    s.faces.clear();
     for (int i = 0; merge(block, s.ring); ++i) {
-      list_faces(block, s);
-      find_meeting(s);
+      list_faces(block, i == 0, s);
+      find_meeting(block, s);
       if (s.meeting.empty()) return;
       for (const uint32_t v : grid_->vertices(block)) {
         const bool meets = std::binary_search(s.meeting.begin(), s.meeting.end(), left_of(v));
@@ -266,67 +269,87 @@ class Thinning {
   }
 
   // All faces with a corner in the block.
-  void list_faces(uint32_t block, Scratch& s) {
-    for (const uint32_t v : grid_->vertices(block)) {
-      if (mesh_.alive(v) && star_is_embedded(v)) flags_[v] |= kEmbedded;
-    }
+  void list_faces(uint32_t block, bool first, Scratch& s) const {
+    s.faces.swap(s.before);
     s.faces.clear();
+    auto last = s.before.cbegin();
     const auto within = [&](uint32_t v) { return grid_->block(v) == block; };
     for (const uint32_t v : grid_->vertices(block)) {
       if (!mesh_.alive(v)) continue;
+      while (last != s.before.cend() && last->corner[0] < v) ++last;
       mesh_.visit_ring(v, [&](uint32_t h) {
-        const std::array<uint32_t, 3> corner{v, mesh_.to(h), mesh_.from(HalfEdges::previous(h))};
-        Face face{corner, false, {}};
-        for (size_t k = 0; k < 3; ++k) {
-          if (!within(corner[k])) continue;
-          if (corner[k] < v) return;  // found from there
-          face.changed = face.changed || has(corner[k], kGrown);
-          face.embedded[k] = has(corner[k], kEmbedded);
+        Face face{{v, mesh_.to(h), mesh_.from(HalfEdges::previous(h))}, false, false, false};
+        for (const uint32_t w : face.corner) {
+          if (!within(w)) continue;
+          if (w < v) return;  // found from there
+          face.changed = face.changed || has(w, kGrown);
         }
+        face.fresh = first ? face.changed : !was_clear(face, last, s.before.cend());
         s.faces.push_back(face);
       });
     }
   }
-  bool star_is_embedded(uint32_t v) const {
-    Fan fan(places_[v].at);
-    mesh_.visit_ring(v, [&](uint32_t h) { fan.add(places_[mesh_.to(h)].at); });
-    return fan.is_embedded();
+  // Whether the face was there the last time, and met no other.
+  static bool was_clear(const Face& face, Vector<Face>::const_iterator last,
+                        Vector<Face>::const_iterator end) {
+    for (; last != end && last->corner[0] == face.corner[0]; ++last) {
+      if (last->corner == face.corner) return !last->meets;
+    }
+    return false;
   }
   // Lists the corners of faces that meet, of which one has changed.
-  void find_meeting(Scratch& s) const {
+  void find_meeting(uint32_t block, Scratch& s) {
     s.meeting.clear();
     s.xyz.clear();
+    s.ids.clear();
     for (const Face& face : s.faces) {
       for (const uint32_t v : face.corner) {
         const Vec3 p = places_[v].at;
         s.xyz.insert(s.xyz.end(), {p.x, p.y, p.z});
       }
+      if (face.fresh) s.ids.push_back(static_cast<uint32_t>(&face - s.faces.data()));
     }
     s.abc.resize(3 * s.faces.size());
     std::iota(s.abc.begin(), s.abc.end(), 0U);
-    s.ids.resize(s.faces.size());
-    std::iota(s.ids.begin(), s.ids.end(), 0U);
     s.tree.build(s.xyz.data(), s.abc.data(), s.ids.data(), s.ids.size(), SerialExecutor());
-    for (size_t leaf = 0; leaf < s.tree.leaf_count(); ++leaf) {
-      s.tree.overlapping_pairs(leaf, [&](uint32_t f, uint32_t g) {
-        const Face &a = s.faces[f], &b = s.faces[g];
-        if ((a.changed || b.changed) && !share_embedded(a, b) &&
-            triangles_intersect(triangle(a), triangle(b))) {
-          s.meeting.insert(s.meeting.end(), a.corner.begin(), a.corner.end());
-          s.meeting.insert(s.meeting.end(), b.corner.begin(), b.corner.end());
-        }
-      });
+    const auto meet = [&](uint32_t f, uint32_t g) {
+      Face &a = s.faces[f], &b = s.faces[g];
+      if ((!a.changed && !b.changed) || share_embedded(a, b, block) ||
+          !triangles_intersect(triangle(a), triangle(b))) {
+        return;
+      }
+      a.meets = b.meets = true;
+      s.meeting.insert(s.meeting.end(), a.corner.begin(), a.corner.end());
+      s.meeting.insert(s.meeting.end(), b.corner.begin(), b.corner.end());
+    };
+    for (size_t leaf = 0; leaf < s.tree.leaf_count(); ++leaf) s.tree.overlapping_pairs(leaf, meet);
+    for (uint32_t f = 0; f < s.faces.size(); ++f) {
+      if (s.faces[f].fresh) continue;
+      const double* p = s.xyz.data() + size_t{9} * f;
+      double low[3], high[3];
+      for (size_t k = 0; k < 3; ++k) {
+        low[k] = std::min({p[k], p[k + 3], p[k + 6]});
+        high[k] = std::max({p[k], p[k + 3], p[k + 6]});
+      }
+      s.tree.within(low, high, [&](uint32_t g) { meet(f, g); });
     }
     std::sort(s.meeting.begin(), s.meeting.end());
   }
-  static bool share_embedded(const Face& a, const Face& b) {
-    for (size_t k = 0; k < 3; ++k) {
-      if (a.embedded[k] &&
-          std::find(b.corner.begin(), b.corner.end(), a.corner[k]) != b.corner.end()) {
-        return true;
-      }
+  bool share_embedded(const Face& a, const Face& b, uint32_t block) {
+    return std::any_of(a.corner.begin(), a.corner.end(), [&](uint32_t v) {
+      return std::find(b.corner.begin(), b.corner.end(), v) != b.corner.end() &&
+             grid_->block(v) == block && is_embedded(v);
+    });
+  }
+  // v: of the block at hand.
+  bool is_embedded(uint32_t v) {
+    if (!has(v, kSeen)) {
+      Fan fan(places_[v].at);
+      mesh_.visit_ring(v, [&](uint32_t h) { fan.add(places_[mesh_.to(h)].at); });
+      flags_[v] |= kSeen;
+      if (fan.is_embedded()) flags_[v] |= kEmbedded;
     }
-    return false;
+    return has(v, kEmbedded);
   }
   Triangle triangle(const Face& face) const {
     Triangle t;
