@@ -2,6 +2,7 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <cstring>
 
 namespace plc {
 
@@ -22,5 +23,19 @@ inline void set_mark(uint8_t& mark, uint8_t value) {
 #else
 #error "std::atomic_ref is needed"
 #endif
+
+// visit(index) of the bytes that are not 0, ascending. They are few, so eight are looked at at
+// once.
+template <typename Visit>
+void visit_marks(const uint8_t* marks, uint32_t count, const Visit& visit) {
+  for (uint32_t i = 0; i < count; ++i) {
+    uint64_t eight = 0;
+    while (i + sizeof eight <= count &&
+           (std::memcpy(&eight, marks + i, sizeof eight), eight == 0)) {
+      i += sizeof eight;
+    }
+    if (i < count && marks[i] != 0) visit(i);
+  }
+}
 
 }  // namespace plc

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 
 #include "engine/base/blocks.h"
 #include "engine/base/constants.h"
+#include "engine/base/marks.h"
 #include "engine/base/parallel_sort.h"
 #include "engine/detect/risk.h"
 #include "kernels/nearby.h"
@@ -48,16 +50,18 @@ class ClosedRing {
 void Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash,
                           const VertexBytes* risk) {
   risk_ = risk;
-  const size_t tasks = search(due, hash, Wanted::kNearAndRisk);
-  gather_near(tasks);
-  at_risk_.clear();
-  gather_at_risk(tasks);
+  risks_.clear();
+  risks_.resize(mesh_.slots());
+  gather_near(search(due, hash, Wanted::kNearAndRisk));
+  gather_at_risk();
 }
 
 void Surroundings::search_folded(const Vector<uint32_t>& folded, const SpatialHash& hash,
                                  const VertexBytes& risk) {
   risk_ = &risk;
-  if (!folded.empty()) gather_at_risk(search(folded, hash, Wanted::kNearAndRisk));
+  if (folded.empty()) return;
+  search(folded, hash, Wanted::kNearAndRisk);
+  gather_at_risk();
 }
 
 void Surroundings::search_near(const Vector<uint32_t>& all, const SpatialHash& hash) {
@@ -78,8 +82,6 @@ size_t Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash
   run_blocks(executor_, due.size(), kTaskVertices, [&](size_t index, size_t begin, size_t end) {
     Task& task = tasks_[index];
     task.too_near.clear();
-    task.at_risk.clear();
-    task.distinct_at_risk = 0;
     const Spares<Scratch>::Lent lent = scratches_.lend();
     Scratch& scratch = *lent;
     for (size_t i = begin; i < end;) {
@@ -96,11 +98,9 @@ size_t Surroundings::search(const Vector<uint32_t>& due, const SpatialHash& hash
   return tasks;
 }
 
-void Surroundings::gather_at_risk(size_t tasks) {
-  for (size_t index = 0; index < tasks; ++index) {
-    const Vector<uint32_t>& found = tasks_[index].at_risk;
-    at_risk_.insert(at_risk_.end(), found.begin(), found.end());
-  }
+void Surroundings::gather_at_risk() {
+  at_risk_.clear();
+  visit_marks(risks_.data(), mesh_.slots(), [&](uint32_t v) { at_risk_.push_back(v); });
 }
 
 void Surroundings::gather_near(size_t tasks) {
@@ -159,7 +159,7 @@ void Surroundings::fetch(Wanted wanted, Scratch& scratch) const {
 }
 
 void Surroundings::search_group(const uint32_t* due, size_t count, Wanted wanted, Scratch& scratch,
-                                Task& task) const {
+                                Task& task) {
   fetch(wanted, scratch);
   const auto around = static_cast<uint32_t>(scratch.around.ids.size());
   const auto& [x, y, z, nx, ny, nz] = scratch.streams;
@@ -202,7 +202,7 @@ void Surroundings::list_near(uint32_t v, uint32_t hits, const Scratch& scratch, 
   }
 }
 
-void Surroundings::judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task) const {
+void Surroundings::judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task) {
   const Vec3 p = mesh_.at(v), n = sheet_normal(v);
   const ClosedRing ring(mesh_, v);
   scratch.turned.clear();
@@ -218,26 +218,23 @@ void Surroundings::judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task
     if (dot(n, sheet_normal(w)) <= kRiskDot && squared_distance(p, mesh_.at(w)) <= far * far)
       scratch.turned.push_back(w);
   }
-  if (!scratch.turned.empty()) list_risk(v, scratch.turned, task);
+  if (!scratch.turned.empty()) mark_risk(v, scratch.turned);
 }
 
-void Surroundings::list_risk(uint32_t v, const Vector<uint32_t>& turned, Task& task) const {
-  const size_t before = task.at_risk.size();
-  if (mesh_.valence(v) > kRiskRing) {
-    task.at_risk.insert(task.at_risk.end(), turned.begin(), turned.end());
-  } else {
-    const Risk risk(mesh_, v);
-    for (const uint32_t w : turned) {
-      if (risk.may_meet(w)) task.at_risk.push_back(w);
-    }
+// Of two that are known to be at risk nothing is to be found: which tasks have come before makes no
+// difference to the marks.
+void Surroundings::mark_risk(uint32_t v, const Vector<uint32_t>& turned) {
+  const bool large = mesh_.valence(v) > kRiskRing;
+  std::optional<Risk> risk;
+  bool marked = read_mark(risks_[v]) != 0;
+  for (const uint32_t w : turned) {
+    if (marked && read_mark(risks_[w]) != 0) continue;
+    if (!large && !risk) risk.emplace(mesh_, v);
+    if (!large && !risk->may_meet(w)) continue;
+    set_mark(risks_[v], 1);
+    set_mark(risks_[w], 1);
+    marked = true;
   }
-  if (task.at_risk.size() > before) task.at_risk.push_back(v);
-  // Where much is near, it is so to many.
-  constexpr size_t kMany = 1 << 14;
-  if (task.at_risk.size() < std::max(kMany, 2 * task.distinct_at_risk)) return;
-  std::sort(task.at_risk.begin(), task.at_risk.end());
-  task.at_risk.erase(std::unique(task.at_risk.begin(), task.at_risk.end()), task.at_risk.end());
-  task.distinct_at_risk = task.at_risk.size();
 }
 
 }  // namespace plc

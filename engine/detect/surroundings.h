@@ -44,7 +44,7 @@ class Surroundings {
   // Of the last search: the non-neighbours u < w, one of them due, that are nearer than (3) allows;
   // sorted.
   const Vector<VertexPair>& too_near() const { return too_near_; }
-  // Of the last search: the vertices at risk (risk.h), one of each two at least due; some twice.
+  // Of the last search: the vertices at risk (risk.h), one of each two at least due; ascending.
   // None after search_near().
   const Vector<uint32_t>& at_risk() const { return at_risk_; }
 
@@ -52,8 +52,6 @@ class Surroundings {
   // What one task has found.
   struct Task {
     Vector<VertexPair> too_near;
-    Vector<uint32_t> at_risk;
-    size_t distinct_at_risk = 0;  // when they were last told apart
   };
   // What it works with.
   struct Scratch {
@@ -67,17 +65,16 @@ class Surroundings {
   // Fills the tasks; returns how many.
   size_t search(const Vector<uint32_t>& due, const SpatialHash& hash, Wanted wanted);
   void gather_near(size_t tasks);
-  void gather_at_risk(size_t tasks);
+  void gather_at_risk();
   Vec3 sheet_normal(uint32_t v) const;
   void fetch(Wanted wanted, Scratch& scratch) const;
-  void search_group(const uint32_t* due, size_t count, Wanted wanted, Scratch& scratch,
-                    Task& task) const;
+  void search_group(const uint32_t* due, size_t count, Wanted wanted, Scratch& scratch, Task& task);
   bool is_due(uint32_t v) const { return (is_due_[v / kBits] >> v % kBits & 1) != 0; }
   bool too_near(uint32_t v, uint32_t w) const;
   void list_near(uint32_t v, uint32_t hits, const Scratch& scratch, Task& task) const;
-  void judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task) const;
+  void judge(uint32_t v, uint32_t hits, Scratch& scratch, Task& task);
   // turned: what is turned against v, and near enough.
-  void list_risk(uint32_t v, const Vector<uint32_t>& turned, Task& task) const;
+  void mark_risk(uint32_t v, const Vector<uint32_t>& turned);
   size_t group_size(const uint32_t* due, size_t count, Vec3& low, Vec3& high, float& largest) const;
 
   const Mesh& mesh_;
@@ -87,6 +84,7 @@ class Surroundings {
   Spares<Scratch> scratches_;
   Vector<uint64_t> is_due_;  // a bit per vertex: in this search
   Vector<VertexPair> too_near_;
+  Buffer<uint8_t> risks_;  // a mark per vertex
   Vector<uint32_t> at_risk_;
 };
 

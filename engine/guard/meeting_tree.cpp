@@ -1,11 +1,11 @@
 // The listed faces of a search for meetings, and the tree of boxes over them.
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <limits>
 #include <span>
 
 #include "engine/base/blocks.h"
+#include "engine/base/marks.h"
 #include "engine/exact/triangle_intersection.h"
 #include "engine/guard/meeting_search.h"
 #include "pyramid/memory.h"
@@ -17,20 +17,6 @@ namespace {
 constexpr size_t kVertexBlock = 128;
 constexpr size_t kNodeBlock = 128;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-// visit(index) of the bytes that are not 0, ascending. They are few, so eight are looked at at
-// once.
-template <typename Visit>
-void for_set_bytes(const uint8_t* bytes, uint32_t count, const Visit& visit) {
-  for (uint32_t i = 0; i < count; ++i) {
-    uint64_t eight = 0;
-    while (i + sizeof eight <= count &&
-           (std::memcpy(&eight, bytes + i, sizeof eight), eight == 0)) {
-      i += sizeof eight;
-    }
-    if (i < count && bytes[i] != 0) visit(i);
-  }
-}
 
 Box3 box_of(const Float4* positions, const uint32_t* abc) {
   const FaceBox box = face_box(positions, abc);
@@ -63,7 +49,7 @@ void MeetingSearch::list_vertices(const Mesh& mesh) {
     for (uint32_t k = 0; k < count; ++k) list(mesh.rings.slot(v, k));
   };
   if (mesh.marks != nullptr) {
-    for_set_bytes(mesh.marks, mesh.slots, with_neighbors);
+    visit_marks(mesh.marks, mesh.slots, with_neighbors);
     sort_vertices(mesh.slots);
     if (mesh.strays != nullptr) place_strays(mesh);
     return;
@@ -81,7 +67,7 @@ void MeetingSearch::sort_vertices(uint32_t slots) {
     return;
   }
   vertices_.clear();
-  for_set_bytes(listed_.data(), slots, [&](uint32_t v) { vertices_.push_back(v); });
+  visit_marks(listed_.data(), slots, [&](uint32_t v) { vertices_.push_back(v); });
 }
 
 uint64_t MeetingSearch::where_listed(const Mesh& mesh, uint32_t v) {
