@@ -24,10 +24,11 @@ struct RingView {
   const uint16_t* valence = nullptr;
   const uint32_t* tail = nullptr;
 
-  // Column `column` of vertex v.
-  uint32_t column(uint32_t v, uint32_t column) const {
-    return columns[(v / kRingLanes * kRingColumns + column) * kRingLanes + v % kRingLanes];
+  // Where column `column` of vertex v is, in columns.
+  static uint32_t place(uint32_t v, uint32_t column) {
+    return (v / kRingLanes * kRingColumns + column) * kRingLanes + v % kRingLanes;
   }
+  uint32_t column(uint32_t v, uint32_t column) const { return columns[place(v, column)]; }
   // Slot k < valence[v] of vertex v.
   uint32_t slot(uint32_t v, uint32_t k) const {
     return k < kRingSlots ? column(v, k) : tail[column(v, kRingSlots) + (k - kRingSlots)];

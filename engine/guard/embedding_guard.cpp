@@ -6,6 +6,7 @@
 #include "engine/exact/vertex_star.h"
 #include "engine/guard/obstacles.h"
 #include "engine/transform/deletion.h"
+#include "kernels/prefetch.h"
 #include "pyramid/memory.h"
 
 namespace plc {
@@ -298,6 +299,8 @@ bool EmbeddingGuard::clear_of(const Mesh& mesh, const Proposal& proposal, const 
   const RingView rings = mesh.rings();
   const Float4* const at = mesh.position.data();
   const FaceBox all = widened(box_);
+  // What transformations are asked for lies anywhere: the rings come from far away in memory.
+  for (const uint32_t* id = ids; id != ids + count; ++id) prefetch_ring_of(rings, *id);
   for (const uint32_t* id = ids; id != ids + count; ++id) {
     const uint32_t x = *id, d = rings.valence[x];
     if (d == 0 || removed(x) || mesh.is_absent(x)) continue;
