@@ -378,31 +378,49 @@ void SizeField::bound_slope() {
   high_ = {-1, -1, -1};
 }
 
-// Every cell of the box from those before it in this direction.
+// Every cell of the box from those before it in this direction, row by row: vector code does what
+// rows before it ask for.
 void SizeField::sweep(int direction) {
   const int64_t nx = cells_[0], ny = cells_[1], nz = cells_[2];
-  std::array<int64_t, 3> n{};
-  for (size_t a = 0; a < 3; ++a) n[a] = std::max(high_[a] - low_[a] + 1, 0);
-  const auto in_turn = [&](int64_t k, size_t a) {
-    return direction > 0 ? low_[a] + k : high_[a] - k;
+  const int64_t begin = low_[0], end = int64_t{high_[0]} + 1;
+  const auto row = [&](int64_t y, int64_t z) {
+    return sizes_.data() + static_cast<size_t>((z * ny + y) * nx);
   };
-  for (int64_t k = 0; k < n[0] * n[1] * n[2]; ++k) {
-    const int64_t x = in_turn(k % n[0], 0), y = in_turn(k / n[0] % n[1], 1);
-    const int64_t z = in_turn(k / (n[0] * n[1]), 2);
-    uint8_t& own = sizes_[static_cast<size_t>((z * ny + y) * nx + x)];
-    int least = own;
-    for (int dz = -1; dz <= 0; ++dz) {
-      for (int dy = -1; dy <= (dz == 0 ? 0 : 1); ++dy) {
-        for (int dx = -1; dx <= (dz == 0 && dy == 0 ? -1 : 1); ++dx) {
-          const int64_t u = x + direction * dx, v = y + direction * dy, w = z + direction * dz;
-          if (u < 0 || v < 0 || w < 0 || u >= nx || v >= ny || w >= nz) continue;
-          const auto away = static_cast<size_t>((dx != 0) + (dy != 0) + (dz != 0));
-          least =
-              std::min(least, sizes_[static_cast<size_t>((w * ny + v) * nx + u)] + steps_[away]);
-        }
+  const auto lower_by_row = [&](uint8_t* own, const uint8_t* other, size_t away) {
+    const auto lower = [&](int64_t from, int64_t to, int64_t aside, int step) {
+      for (int64_t x = from; x < to; ++x) {
+        own[x] = static_cast<uint8_t>(std::min<int>(own[x], other[x + aside] + step));
       }
+    };
+    lower(begin, end, 0, steps_[away]);
+    lower(std::max<int64_t>(begin, 1), end, -1, steps_[away + 1]);
+    lower(begin, std::min(end, nx - 1), 1, steps_[away + 1]);
+  };
+  const auto lower_along = [&](uint8_t* own) {
+    const auto lower = [&](int64_t x, int64_t from) {
+      own[x] = static_cast<uint8_t>(std::min<int>(own[x], own[from] + steps_[1]));
+    };
+    if (direction > 0) {
+      for (int64_t x = std::max<int64_t>(begin, 1); x < end; ++x) lower(x, x - 1);
+    } else {
+      for (int64_t x = std::min(end, nx - 1); x-- > begin;) lower(x, x + 1);
     }
-    own = static_cast<uint8_t>(least);
+  };
+  const auto in_turn = [&](int32_t k, size_t a) {
+    return int64_t{direction > 0 ? low_[a] + k : high_[a] - k};
+  };
+  for (int32_t k = 0; k <= high_[2] - low_[2]; ++k) {
+    const int64_t z = in_turn(k, 2), before = z - direction;
+    for (int32_t i = 0; i <= high_[1] - low_[1]; ++i) {
+      const int64_t y = in_turn(i, 1);
+      uint8_t* own = row(y, z);
+      for (int64_t v = y - 1; v <= y + 1 && before >= 0 && before < nz; ++v) {
+        if (v >= 0 && v < ny) lower_by_row(own, row(v, before), v == y ? 1 : 2);
+      }
+      const int64_t v = y - direction;
+      if (v >= 0 && v < ny) lower_by_row(own, row(v, z), 1);
+      lower_along(own);
+    }
   }
 }
 
