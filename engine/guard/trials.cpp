@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/base/blocks.h"
+#include "engine/base/constants.h"
 #include "pyramid/memory.h"
 
 namespace plc {
@@ -31,6 +32,9 @@ void include(Box3& box, const Box3& other) {
 Proposal propose(const Mesh& mesh, const Candidate& c, uint32_t place) {
   if (c.operation == Operation::kCreation) return propose_creation(mesh, c.edge);
   if (c.operation == Operation::kInversion) return propose_inversion(mesh, c.edge);
+  if (c.operation == Operation::kAnnular) {
+    return propose_annular(mesh, c.cycle(), annular_copies(mesh, c.cycle(), kAnnularRetreat));
+  }
   return propose_deletion(mesh, c.edge, Trials::deletion_place(mesh, c.edge, place));
 }
 
@@ -42,10 +46,10 @@ Vec3 Trials::deletion_place(const Mesh& mesh, const Edge& e, uint32_t place) {
 }
 
 bool Trials::can_try(const Mesh& mesh, const Candidate& c) {
-  if (c.operation == Operation::kCreation || c.operation == Operation::kInversion) return true;
+  if (c.operation == Operation::kAxial) return false;
   // Where an apex has valence 3 a tetrahedron is deleted, and not an edge.
-  return c.operation == Operation::kDeletion && mesh.valence(c.edge.a) > 3 &&
-         mesh.valence(c.edge.b) > 3;
+  return c.operation != Operation::kDeletion ||
+         (mesh.valence(c.edge.a) > 3 && mesh.valence(c.edge.b) > 3);
 }
 
 uint32_t Trials::first_admitted(const Candidate& c, EmbeddingGuard& guard, Box3* tried) const {

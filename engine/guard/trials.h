@@ -17,7 +17,7 @@ namespace plc {
 // asked again: of what had been admitted only against the faces that have come. So admitted() says
 // what the guard would say of the mesh as it is now, whatever had been tried.
 //
-// Creations, inversions and deletions are tried; deletions at each place that the merged vertex may
+// All but axial transformations are tried; deletions at each place that the merged vertex may
 // have, until the guard admits one.
 class Trials {
  public:

@@ -49,7 +49,7 @@ class Resolution {
   bool apply(const Candidate& candidate, size_t trial, OperationCounts& counts);
   bool apply_inversion(const Candidate& candidate, size_t trial);
   bool apply_deletion(const Candidate& candidate, size_t trial, OperationCounts& counts);
-  bool apply_annular(const Candidate& candidate);
+  bool apply_annular(const Candidate& candidate, size_t trial);
   bool apply_axial(const Candidate& candidate);
   bool apply_creation(const Candidate& candidate, size_t trial);
   // v has changed: its constraints are checked again in this pass.

@@ -18,7 +18,7 @@ bool Resolution::apply(const Candidate& candidate, size_t trial, OperationCounts
   };
   switch (candidate.operation) {
     case Operation::kAnnular:
-      return count(apply_annular(candidate), counts.annular);
+      return count(apply_annular(candidate, trial), counts.annular);
     case Operation::kDeletion:
       return apply_deletion(candidate, trial, counts);
     case Operation::kInversion:
@@ -90,10 +90,10 @@ bool Resolution::apply_deletion(const Candidate& candidate, size_t trial, Operat
   return true;
 }
 
-bool Resolution::apply_annular(const Candidate& candidate) {
+bool Resolution::apply_annular(const Candidate& candidate, size_t trial) {
+  if (trials_.admitted(candidate, trial) == Trials::kRefused) return false;
   const Cycle cycle = candidate.cycle();
   const auto copies = annular_copies(mesh_, cycle, kAnnularRetreat);
-  if (!guard_.embeds(mesh_, detection_.hash(), propose_annular(mesh_, cycle, copies))) return false;
   const auto right = cut_cycle(mesh_, cycle, copies, next_cut_++, iteration_);
   for (uint32_t i = 0; i < cycle.size; ++i) {
     inherit_operations(right[i], cycle.corner[i]);
