@@ -118,9 +118,13 @@ void Resolution::queue_violated_edges() {
                              kMaxEdge * kMaxEdge * delta * delta,
                              Blocks::of(blocks_.data(), blocks_.size(), begin, end), flags_.data());
   });
+  cycles_due_.clear();
+  cycles_due_.resize(mesh_.slots());
   for (const auto* queue : {&detection_.due(), &std::as_const(pair_queue_)}) {
     for (const uint32_t v : *queue) {
-      if (flags_[v] != 0) edge_queue_.push_back(v);
+      if (flags_[v] == 0) continue;
+      edge_queue_.push_back(v);
+      cycles_due_[v] = 1;
     }
   }
 }
@@ -177,6 +181,10 @@ Vector<Candidate> Resolution::edge_candidates(const Vector<uint32_t>& queue) {
       if (const auto candidate = edge_candidate(mesh_, from, slot)) out.push_back(*candidate);
     }
     // To look around all due vertices finds nothing more that stays, and takes 3 to 10 % longer.
+    // Nor does it to look again around those that only something was put off at: most of what a
+    // transformation makes goes through a vertex that it has changed.
+    if (cycles_due_[u] == 0) return;
+    cycles_due_[u] = 0;
     if (const auto candidate = denied_cycle(mesh_, u)) out.push_back(*candidate);
   };
   return collect_sorted(executor_, queue.size(), kChunk, std::less<Candidate>(), collect);
@@ -261,6 +269,10 @@ void Resolution::apply_in_turn(const Candidate& candidate, size_t trial, Vector<
   if (!free_footprint(candidate, round_)) {
     later.push_back(candidate.edge.u);
     later.push_back(candidate.edge.v);
+    // A cycle is not always seen along its edges: it is looked for again.
+    if (candidate.operation == Operation::kAnnular) {
+      cycles_due_[candidate.edge.u] = cycles_due_[candidate.edge.v] = 1;
+    }
     return;
   }
   if (mesh_.is_patch() && !spares_held(mesh_, candidate)) return;

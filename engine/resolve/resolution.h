@@ -74,6 +74,7 @@ class Resolution {
   Vector<uint32_t> stamp_;       // by vertex: the queue it was last in, or what has claimed it
   Vector<uint32_t> footprint_;   // of the candidate at hand
   Buffer<uint8_t> operations_;   // by vertex: in this pass, on it or on what it was made of
+  Buffer<uint8_t> cycles_due_;   // ... whether denied cycles are looked for around it
   EmbeddingGuard guard_;
   Trials trials_;
   Vector<const Candidate*> tried_;  // of the run at hand

@@ -38,6 +38,8 @@ bool Resolution::apply(const Candidate& candidate, size_t trial, OperationCounts
 
 void Resolution::check_again(uint32_t v) {
   edge_queue_.push_back(v);
+  if (cycles_due_.size() < mesh_.slots()) cycles_due_.resize(mesh_.slots());
+  cycles_due_[v] = 1;
   pair_queue_.push_back(v);
   mesh_.touch(v);
   trials_.changed(v);
