@@ -132,7 +132,7 @@ class Thinning {
   struct Face {
     std::array<uint32_t, 3> corner;
     bool changed;  // in this stage
-    bool fresh;    // may meet others that have been listed before, or are not fresh either
+    bool fresh;    // it may meet any; those that are not do not meet each other
     bool meets;
   };
   // What a task needs for a block.
@@ -289,11 +289,12 @@ class Thinning {
       });
     }
   }
-  // Whether the face was there the last time, and met no other.
+  // Whether the face was there the last time, was compared with all that had changed, or with all,
+  // and met none.
   static bool was_clear(const Face& face, Vector<Face>::const_iterator last,
                         Vector<Face>::const_iterator end) {
     for (; last != end && last->corner[0] == face.corner[0]; ++last) {
-      if (last->corner == face.corner) return !last->meets;
+      if (last->corner == face.corner) return !last->meets && (last->changed || !face.changed);
     }
     return false;
   }
