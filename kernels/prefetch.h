@@ -10,17 +10,17 @@ inline void prefetch_near([[maybe_unused]] const void* p) {
   __builtin_prefetch(p);
 #endif
 }
-// The valence of v, and what most rings have of slots.
-inline void prefetch_ring_of(const RingView& rings, uint32_t v) {
-  constexpr uint32_t kCommon = 6;
-  prefetch_near(rings.valence + v);
-  for (uint32_t k = 0; k < kCommon; ++k) prefetch_near(rings.columns + RingView::place(v, k));
-}
 // Into the second.
 inline void prefetch_far([[maybe_unused]] const void* p) {
 #if defined(__GNUC__)
   __builtin_prefetch(p, 0, 2);
 #endif
+}
+// Into the first: the valence of v, and as many slots as most rings have.
+inline void prefetch_ring_of(const RingView& rings, uint32_t v) {
+  constexpr uint32_t kCommon = 6;
+  prefetch_near(rings.valence + v);
+  for (uint32_t k = 0; k < kCommon; ++k) prefetch_near(rings.columns + RingView::place(v, k));
 }
 
 }  // namespace plc

@@ -119,14 +119,20 @@ void Resolution::queue_violated_edges() {
                              Blocks::of(blocks_.data(), blocks_.size(), begin, end), flags_.data());
   });
   cycles_due_.clear();
-  cycles_due_.resize(mesh_.slots());
   for (const auto* queue : {&detection_.due(), &std::as_const(pair_queue_)}) {
     for (const uint32_t v : *queue) {
       if (flags_[v] == 0) continue;
       edge_queue_.push_back(v);
-      cycles_due_[v] = 1;
+      look_for_cycles(v);
     }
   }
+}
+
+// Denied ones around v, once v has its turn in the queue of edges.
+void Resolution::look_for_cycles(uint32_t v) {
+  if (mesh_.sizing == nullptr) return;
+  if (cycles_due_.size() < mesh_.slots()) cycles_due_.resize(mesh_.slots());
+  cycles_due_[v] = 1;
 }
 
 uint32_t Resolution::stamp_queue(const Vector<uint32_t>& queue) {
@@ -183,7 +189,7 @@ Vector<Candidate> Resolution::edge_candidates(const Vector<uint32_t>& queue) {
     // To look around all due vertices finds nothing more that stays, and takes 3 to 10 % longer.
     // Nor does it to look again around those that only something was put off at: most of what a
     // transformation makes goes through a vertex that it has changed.
-    if (cycles_due_[u] == 0) return;
+    if (u >= cycles_due_.size() || cycles_due_[u] == 0) return;
     cycles_due_[u] = 0;
     if (const auto candidate = denied_cycle(mesh_, u)) out.push_back(*candidate);
   };
@@ -271,7 +277,8 @@ void Resolution::apply_in_turn(const Candidate& candidate, size_t trial, Vector<
     later.push_back(candidate.edge.v);
     // A cycle is not always seen along its edges: it is looked for again.
     if (candidate.operation == Operation::kAnnular) {
-      cycles_due_[candidate.edge.u] = cycles_due_[candidate.edge.v] = 1;
+      look_for_cycles(candidate.edge.u);
+      look_for_cycles(candidate.edge.v);
     }
     return;
   }

@@ -55,6 +55,7 @@ class Resolution {
   // v has changed: its constraints are checked again in this pass.
   void check_again(uint32_t v);
   void enter_and_check(uint32_t v);
+  void look_for_cycles(uint32_t v);
   void inherit_operations(uint32_t created, uint32_t from);
   uint32_t stamp_queue(const Vector<uint32_t>& queue);
   void unique(Vector<uint32_t>& queue);
@@ -74,7 +75,7 @@ class Resolution {
   Vector<uint32_t> stamp_;       // by vertex: the queue it was last in, or what has claimed it
   Vector<uint32_t> footprint_;   // of the candidate at hand
   Buffer<uint8_t> operations_;   // by vertex: in this pass, on it or on what it was made of
-  Buffer<uint8_t> cycles_due_;   // ... whether denied cycles are looked for around it
+  Buffer<uint8_t> cycles_due_;   // ... of an adaptive mesh: whether to look for denied cycles
   EmbeddingGuard guard_;
   Trials trials_;
   Vector<const Candidate*> tried_;  // of the run at hand

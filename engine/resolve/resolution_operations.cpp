@@ -38,8 +38,7 @@ bool Resolution::apply(const Candidate& candidate, size_t trial, OperationCounts
 
 void Resolution::check_again(uint32_t v) {
   edge_queue_.push_back(v);
-  if (cycles_due_.size() < mesh_.slots()) cycles_due_.resize(mesh_.slots());
-  cycles_due_[v] = 1;
+  look_for_cycles(v);
   pair_queue_.push_back(v);
   mesh_.touch(v);
   trials_.changed(v);

@@ -289,8 +289,8 @@ class Thinning {
       });
     }
   }
-  // Whether the face was there the last time, was compared with all that had changed, or with all,
-  // and met none.
+  // Whether the face was there the last time and met none, of all faces if it had changed, else of
+  // those that had; what has changed since is to be compared with the others, too.
   static bool was_clear(const Face& face, Vector<Face>::const_iterator last,
                         Vector<Face>::const_iterator end) {
     for (; last != end && last->corner[0] == face.corner[0]; ++last) {

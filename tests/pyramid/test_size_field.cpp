@@ -173,6 +173,36 @@ TEST_CASE("sizes are lowered where voxels are, in whatever order, and grow from 
   CHECK(most < 0.12F);
 }
 
+TEST_CASE("sizes grow from where they were lowered by chamfer steps, at the border, too",
+          "[size_field]") {
+  const Image empty = image_of([](float, float, float) { return -100.0F; });
+  constexpr int kCells = kSide / 2;
+  for (const std::array<int32_t, 3>& cell :
+       {std::array<int32_t, 3>{0, 0, 0}, {23, 0, 0}, {0, 23, 1}, {23, 22, 23}, {11, 5, 17}}) {
+    plc::SizeField field = field_of(empty);
+    field.lower({2 * cell[0], 2 * cell[1], 2 * cell[2]}, 1, 0);
+    field.bound_slope();
+    bool right = true;
+    for (int z = 0; z < kCells; ++z) {
+      for (int y = 0; y < kCells; ++y) {
+        for (int x = 0; x < kCells; ++x) {
+          std::array<int, 3> away{std::abs(x - cell[0]), std::abs(y - cell[1]),
+                                  std::abs(z - cell[2])};
+          std::sort(away.begin(), away.end());
+          // Cubes are 1.6 wide; slope 0.1, in steps of 1/32, of which 5, 7 and 8 are whole.
+          const int steps = 8 * away[0] + 7 * (away[1] - away[0]) + 5 * (away[2] - away[1]);
+          const float expected = std::min(4.0F, 1 + static_cast<float>(steps) / 32);
+          right = right && at(field, 2.0F * static_cast<float>(x) + 0.5F,
+                              2.0F * static_cast<float>(y) + 0.5F,
+                              2.0F * static_cast<float>(z) + 0.5F) == Approx(expected);
+        }
+      }
+    }
+    CAPTURE(cell);
+    CHECK(right);
+  }
+}
+
 TEST_CASE("beyond the image sizes are those of its border", "[size_field]") {
   const plc::SizeField field = field_of(ball(10));
   CHECK(at(field, -50, kMiddle, kMiddle) == at(field, 0, kMiddle, kMiddle));

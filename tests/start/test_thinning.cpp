@@ -1,0 +1,72 @@
+#include "engine/start/thinning.h"
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "engine/guard/self_meeting.h"
+#include "engine/mesh/mesh_invariants.h"
+#include "tests/samples/sample_shapes.h"
+#include "tests/samples/sample_volumes.h"
+
+namespace {
+
+// Sizes of 1 everywhere: an image without a surface.
+struct Evenly {
+  Evenly() {
+    REQUIRE(sizing.field
+                .build({values.data(), {32, 32, 32}, {1, 1, 1}, {0, 0, 0}, {}}, 0.5F, 1, {0.5, 1},
+                       plc::SerialExecutor())
+                .ok());
+  }
+  std::vector<float> values = std::vector<float>(32 * 32 * 32, 0.0F);
+  plc::Sizing sizing;
+};
+
+// A rough ball of radius 6 with edges of a fifth: within one block whatever the grid.
+samples::Soup rough_ball(double scale) {
+  samples::Random random(7);
+  samples::Soup soup = samples::sphere(5);
+  for (size_t v = 0; v < soup.xyz.size(); v += 3) {
+    const double factor = 6 * scale * random.uniform(0.985, 1.0);
+    for (size_t i = v; i < v + 3; ++i) soup.xyz[i] *= factor;
+  }
+  return soup;
+}
+
+struct Thinned {
+  plc::Mesh mesh;
+  int grids = 0;
+};
+
+void thin_out(const samples::Soup& soup, plc::Sizing& sizing, Thinned& thinned) {
+  const std::vector<float> xyz(soup.xyz.begin(), soup.xyz.end());
+  thinned.mesh.delta = 1;
+  thinned.mesh.sizing = &sizing;
+  const auto go_on = [&thinned] { return ++thinned.grids > 0; };
+  const plc::MeshArraysOf<float> surface{xyz.data(), xyz.size() / 3, soup.abc.data(),
+                                         soup.abc.size() / 3};
+  REQUIRE(plc::thin_out(surface, plc::Schedule({}), go_on, thinned.mesh).ok());
+}
+
+}  // namespace
+
+TEST_CASE("sheets that thinned out would meet stay finer, by what is found in their block",
+          "[thinning]") {
+  Evenly even;
+  const samples::Soup outer = rough_ball(1),
+                      inner = samples::flipped(samples::turned(rough_ball(0.98)));
+  samples::Soup both = outer;
+  both.append(inner);
+  Thinned alone, within, shell;
+  thin_out(outer, even.sizing, alone);
+  thin_out(inner, even.sizing, within);
+  thin_out(both, even.sizing, shell);
+  CHECK(alone.mesh.vertex_count() < outer.xyz.size() / 3 / 8);
+  CHECK(shell.mesh.vertex_count() > 1.1 * (alone.mesh.vertex_count() + within.mesh.vertex_count()));
+  CHECK(shell.mesh.vertex_count() < both.xyz.size() / 3 / 2);
+  CHECK(plc::broken_invariant(shell.mesh).empty());
+  CHECK(plc::meeting_faces(shell.mesh, plc::SerialExecutor()).empty());
+  // Nothing was left to find where blocks are side by side.
+  CHECK(alone.grids == 3);
+  CHECK(shell.grids == 3);
+}
