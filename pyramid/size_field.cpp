@@ -92,13 +92,16 @@ class Tile {
       const int32_t begin = padding - first[a] + kHalo;
       measured_[a] = {std::max(begin, 0), std::min(begin + image.dims[a] - 2 * padding, kSide)};
     }
+    const int32_t begin = within(0, 0), end = within(kSide - 1, 0) + 1;
+    const int32_t before = std::clamp(kHalo - first[0], 0, kSide - 1);
     float* to = value_.data();
     with_voxel_type(image.form.type, [&](auto voxel) {
       for (int32_t z = 0; z < kSide; ++z) {
-        for (int32_t y = 0; y < kSide; ++y) {
-          for (int32_t x = 0; x < kSide; ++x) {
-            *to++ = image_value<decltype(voxel)>(image, within(x, 0), within(y, 1), within(z, 2));
-          }
+        for (int32_t y = 0; y < kSide; ++y, to += kSide) {
+          float* const row = to + before;
+          image_row<decltype(voxel)>(image, within(y, 1), within(z, 2), begin, end, row);
+          std::fill(to, row, row[0]);
+          std::fill(row + (end - begin), to + kSide, row[end - begin - 1]);
         }
       }
     });

@@ -128,6 +128,7 @@ class Thinning {
   static constexpr uint8_t kGrown = 2;     // something was merged into it
   static constexpr uint8_t kEmbedded = 4;  // the faces around it do not meet each other
   static constexpr uint8_t kSeen = 8;      // whether they do has been looked at
+  static constexpr uint8_t kInRing = 16;   // of the vertex at hand
   using Ring = Vector<uint32_t>;           // neighbours
   struct Face {
     std::array<uint32_t, 3> corner;
@@ -210,36 +211,44 @@ class Thinning {
     ring.clear();
     mesh_.visit_ring(v, [&](uint32_t h) { ring.push_back(mesh_.to(h)); });
   }
-  // Merges the first neighbour into v that may be.
+  // Merges the first neighbour into v that may be. All neighbours are of the block: v is not at its
+  // border.
   bool merge_one(uint32_t v, uint8_t step, Ring& ring) {
     list_ring(v, ring);
+    for (const uint32_t w : ring) flags_[w] |= kInRing;
+    const uint32_t h = first_to_merge(v, step, ring);
+    for (const uint32_t w : ring) flags_[w] &= static_cast<uint8_t>(~kInRing);
+    if (h == HalfEdges::kNone) return false;
+    into_[mesh_.to(h)] = v;
+    flags_[v] |= kGrown;
+    mesh_.contract(h);
+    return true;
+  }
+  uint32_t first_to_merge(uint32_t v, uint8_t step, const Ring& ring) const {
     const float reach = kReaches[step] * places_[v].size;
     uint32_t h = mesh_.out(v);
     for (const uint32_t w : ring) {
       if (merges(w, step) && squared(places_[w].at - places_[v].at) < reach * reach &&
-          may_contract(h, ring) && keeps_shape(h)) {
-        into_[w] = v;
-        flags_[v] |= kGrown;
-        mesh_.contract(h);
-        return true;
+          may_contract(h, ring.size()) && keeps_shape(h)) {
+        return h;
       }
       h = mesh_.around(h);
     }
-    return false;
+    return HalfEdges::kNone;
   }
   bool has_more_than_three(uint32_t v) const {
     const uint32_t first = mesh_.out(v);
     return mesh_.around(mesh_.around(mesh_.around(first))) != first;
   }
-  // ring: that of where h begins.
-  bool may_contract(uint32_t h, const Ring& ring) const {
+  // neighbors: of where h begins, which are marked.
+  bool may_contract(uint32_t h, size_t neighbors) const {
     const uint32_t t = mesh_.twin(h);
     const uint32_t thirds[] = {mesh_.from(mesh_.previous(h)), mesh_.from(mesh_.previous(t))};
     if (!has_more_than_three(thirds[0]) || !has_more_than_three(thirds[1])) return false;
-    size_t neighbors = ring.size(), common = 0;
+    size_t common = 0;
     uint32_t g = t;
     do {
-      common += static_cast<size_t>(std::count(ring.begin(), ring.end(), mesh_.to(g)));
+      common += static_cast<size_t>(has(mesh_.to(g), kInRing));
       ++neighbors;
       g = mesh_.around(g);
     } while (g != t);
