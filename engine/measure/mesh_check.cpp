@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "engine/base/blocks.h"
 #include "engine/base/mesh_arrays.h"
@@ -146,13 +147,14 @@ void note_topology(const MeshTopology& t, MeshCheck& check) {
   check.valence_max = t.valence_max;
 }
 
-void find_intersections(const MeshArrays& mesh, const FaceTree& tree, const Executor& executor,
-                        MeshCheck& check) {
-  const Vector<FacePair> pairs =
+Vector<FacePair> find_intersections(const MeshArrays& mesh, const FaceTree& tree,
+                                    const Executor& executor, MeshCheck& check) {
+  Vector<FacePair> pairs =
       self_intersections(mesh, tree, executor, static_cast<size_t>(kMaxIntersections));
   check.self_intersections = static_cast<int64_t>(pairs.size());
   check.first_intersection[0] = pairs.empty() ? -1 : static_cast<int64_t>(pairs[0].first);
   check.first_intersection[1] = pairs.empty() ? -1 : static_cast<int64_t>(pairs[0].second);
+  return pairs;
 }
 
 std::string count_of(int64_t count, const char* one, const char* many) {
@@ -161,7 +163,8 @@ std::string count_of(int64_t count, const char* one, const char* many) {
 
 }  // namespace
 
-Status check_mesh(const MeshArrays& mesh, const Executor& executor, MeshCheck& check) {
+Status check_mesh(const MeshArrays& mesh, const Executor& executor, MeshCheck& check,
+                  Vector<FacePair>* intersections) {
   if (Status s = check_mesh_input(mesh, executor); !s.ok()) return s;
 
   MeshCheck c;
@@ -178,7 +181,7 @@ Status check_mesh(const MeshArrays& mesh, const Executor& executor, MeshCheck& c
   c.degenerate_faces = static_cast<int64_t>(mesh.face_count - proper.size());
   FaceTree tree;
   tree.build(mesh.xyz, mesh.abc, proper.data(), proper.size(), executor);
-  find_intersections(mesh, tree, executor, c);
+  Vector<FacePair> pairs = find_intersections(mesh, tree, executor, c);
   c.outward = -1;
   if (mesh.face_count != 0 && c.closed != 0 && c.oriented != 0) {
     for (const ComponentSide& side : component_sides(mesh, topology, components, tree, executor)) {
@@ -191,6 +194,7 @@ Status check_mesh(const MeshArrays& mesh, const Executor& executor, MeshCheck& c
                 ? 1
                 : 0;
   check = c;
+  if (intersections != nullptr) *intersections = std::move(pairs);
   return {};
 }
 

@@ -19,8 +19,10 @@
 #include <string>
 
 #include "engine/base/mesh_arrays.h"
+#include "engine/exact/self_intersection.h"
 #include "engine/measure/measures.h"
 #include "pyramid/executor.h"
+#include "pyramid/memory.h"
 #include "pyramid/status.h"
 
 namespace plc {
@@ -42,8 +44,9 @@ struct MeshCheck {
 };
 
 // Input and errors as check_mesh_input() has them; check is unchanged after an error. The same bits
-// for any executor.
-Status check_mesh(const MeshArrays& mesh, const Executor& executor, MeshCheck& check);
+// for any executor. intersections: null, or what becomes those that are counted.
+Status check_mesh(const MeshArrays& mesh, const Executor& executor, MeshCheck& check,
+                  Vector<FacePair>* intersections = nullptr);
 
 // What is wrong with a mesh that is not valid, the gravest thing alone.
 std::string fault_of(const MeshCheck& check);

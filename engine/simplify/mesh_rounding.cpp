@@ -7,6 +7,7 @@
 
 #include "engine/base/double3.h"
 #include "engine/exact/self_intersection.h"
+#include "engine/exact/triangle_intersection.h"
 #include "engine/measure/mesh_check.h"
 
 namespace plc {
@@ -125,6 +126,11 @@ int64_t count_moved(const MeshArrays& mesh, const Vector<double>& xyz) {
   return moved;
 }
 
+bool meet(const MeshArrays& mesh, const FacePair& pair) {
+  return triangles_intersect(make_triangle(mesh.xyz, mesh.face(pair.first)),
+                             make_triangle(mesh.xyz, mesh.face(pair.second)));
+}
+
 Status not_held() {
   return {ErrorCode::kInvalidData, "rounded to floats, faces of the mesh meet"};
 }
@@ -139,14 +145,17 @@ Status round_to_floats(const MeshArrays& mesh, const Executor& executor, Rounded
   if (!std::all_of(xyz.begin(), xyz.end(), finite)) return not_held();
   const MeshArrays made{xyz.data(), mesh.vertex_count, mesh.abc, mesh.face_count};
   MeshCheck check;
+  Vector<FacePair> meeting;
   for (double roundings = 2;; roundings *= 2) {
-    if (Status s = check_mesh(made, executor, check); !s.ok()) return s;
+    if (Status s = check_mesh(made, executor, check, &meeting); !s.ok()) return s;
     if (check.valid != 0) break;
-    if (roundings == 2) {
-      if (Status s = demand_valid(mesh, executor); !s.ok()) return s;
+    const bool met = std::any_of(meeting.begin(), meeting.end(),
+                                 [&](const FacePair& pair) { return meet(mesh, pair); });
+    if (meeting.empty() || met) {
+      Status s = demand_valid(mesh, executor);
+      return s.ok() ? not_held() : s;
     }
-    if (check.self_intersections == 0) return not_held();
-    for (const auto& [i, k] : self_intersections(made, executor)) {
+    for (const auto& [i, k] : meeting) {
       const uint32_t *f = mesh.face(i), *g = mesh.face(k);
       const Apart faces(f, g, mesh);
       const double step = roundings * kRounding *

@@ -110,7 +110,8 @@ class Search {
       const auto first = static_cast<int32_t>(index * kSlab);
       const Slab slab{first, std::min(first + static_cast<int32_t>(kSlab), image_.dims[2]),
                       clearance};
-      for (const uint32_t v : vertices[index]) clear_near(mesh.at(v), slab);
+      const Columns missed = columns_left(slab);
+      for (const uint32_t v : vertices[index]) clear_near(mesh.at(v), slab, missed);
       if (faces[index].empty()) return;
       const Columns left = columns_left(slab);
       for (const uint32_t c : faces[index]) {
@@ -199,6 +200,9 @@ class Search {
   struct VoxelBox {
     Voxel low, high;
   };
+  // Whether anything is missed in the slab, by squares of kSquare voxels of x and y: most of the mesh
+  // is far from all of that.
+  using Columns = Vector<uint8_t>;
 
   std::array<float, 3> voxel_of(Vec3 p) const {
     return {image_.scale[0] * p.x + image_.offset[0], image_.scale[1] * p.y + image_.offset[1],
@@ -217,18 +221,16 @@ class Search {
     box.high[2] = std::min(box.high[2], slab.end - 1);
     return box;
   }
-  void clear_near(Vec3 p, const Slab& slab) {
+  void clear_near(Vec3 p, const Slab& slab, const Columns& left) {
     const std::array<float, 3> centre = voxel_of(p);
     const VoxelBox box = box_around(centre, centre, slab);
+    if (!any_left(box, left)) return;
     for (int32_t z = box.low[2]; z <= box.high[2]; ++z) {
       for (int32_t y = box.low[1]; y <= box.high[1]; ++y) {
         clear_row(centre, slab.clearance, y, z, box.low[0], box.high[0]);
       }
     }
   }
-  // Whether anything is missed in the slab, by squares of kSquare voxels of x and y: most faces are
-  // far from all that is left.
-  using Columns = Vector<uint8_t>;
   Columns columns_left(const Slab& slab) const {
     Columns left(squares(0) * squares(1), 0);
     for (int32_t z = slab.first; z < slab.end; ++z) {
@@ -254,7 +256,7 @@ class Search {
       for (int j = 0; i + j <= steps; ++j) {
         const float u = static_cast<float>(i) / static_cast<float>(steps);
         const float w = static_cast<float>(j) / static_cast<float>(steps);
-        clear_near(a + (b - a) * u + (c - a) * w, slab);
+        clear_near(a + (b - a) * u + (c - a) * w, slab, left);
       }
     }
   }
@@ -266,7 +268,9 @@ class Search {
       low[a] = std::min({q[0][a], q[1][a], q[2][a]}) - 1;
       high[a] = std::max({q[0][a], q[1][a], q[2][a]}) + 1;
     }
-    const VoxelBox box = box_around(low, high, slab);
+    return any_left(box_around(low, high, slab), left);
+  }
+  bool any_left(const VoxelBox& box, const Columns& left) const {
     constexpr auto kStep = static_cast<int32_t>(kSquare);
     for (int32_t y = box.low[1] / kStep * kStep; y <= box.high[1]; y += kStep) {
       for (int32_t x = box.low[0] / kStep * kStep; x <= box.high[0]; x += kStep) {
