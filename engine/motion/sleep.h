@@ -10,14 +10,16 @@
 // A vertex is calm in an iteration in which it has moved less than the calm speed along its normal,
 // and less than kCalmSlide times that in all: sliding within the surface changes samples, not
 // shape. A block of kRingLanes vertices sleeps when all of them have been calm kCalmPeriod times in
-// a row. It is awake again when a transformation or the motion guard has touched one of them, when
-// a neighbour has moved kWakeMove along its normal since it last woke others, and when all are
-// woken: at the start of a level, and before a level may end. Nothing depends on threads.
+// a row, or when a surface at rest settles, so that only what is added to it moves. It is awake
+// again when a transformation or the motion guard has touched one of them, when a neighbour has
+// moved kWakeMove along its normal since it last woke others, and when all are woken: at the start
+// of a level, and before a level may end. Nothing depends on threads.
 #pragma once
 #include <cstdint>
 #include <limits>
 #include <vector>
 
+#include "engine/base/constants.h"
 #include "engine/base/state_io.h"
 #include "engine/mesh/mesh.h"
 #include "engine/mesh/vertex_bytes.h"
@@ -56,6 +58,8 @@ class Sleep {
   // displacements are those of the step.
   void observe();
   void wake_all() { calm_.fill(0); }
+  // All count as calm for long: they sleep until they are touched.
+  void settle() { calm_.fill(kCalmPeriod); }
   // The surface sets out on a way of at most so many iterations, on which turns do not count.
   void travel(int most) { travel_.start(most); }
   bool travelling() const { return travel_.going(); }

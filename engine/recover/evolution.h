@@ -44,6 +44,8 @@ class Evolution {
   // Whether some vertices slept through the last iteration.
   bool any_asleep() const { return sleep_.any_asleep(); }
   void wake_all() { sleep_.wake_all(); }
+  // All sleep but what is touched from then on.
+  void settle() { sleep_.settle(); }
   // Kinetic energy along the normals of the last iteration (5.1).
   double energy() const { return dynamics_.energy(); }
   // The longest movement of the last iteration, in delta per time.

@@ -173,8 +173,8 @@ Status Recovery::adapt(bool conformed) {
   if (mesh_.sizing == nullptr) {
     if (Status s = build_sizing(); !s.ok()) return s;
   }
-  resize_all();
   for (uint32_t v = 0; v < mesh_.slots(); ++v) {
+    mesh_.resize(v);
     mesh_.wake(v);
     mesh_.turns[v] = 0;
   }
@@ -324,10 +324,17 @@ bool Recovery::near_rest() const {
   return energy_ <= kLateEnergy * spec_.epsilon;
 }
 
-// Where something was added, another round begins.
+// Where something was added, another round begins. Of an adaptive mesh that is at rest all sleeps
+// then but what has been added, and what that wakes: before its first search it has moved as a
+// whole until it was calm.
 Status Recovery::search(bool& added) {
+  const bool settled = mesh_.sizing != nullptr && round_.calm >= kCalmIterations;
+  if (settled) evolution_.settle();
   Status s = add_late_bubbles(added);
-  if (s.ok() && added) start_round(round_.number + 1, true);
+  if (s.ok() && added) {
+    start_round(round_.number + 1, true);
+    round_.settled = settled;
+  }
   return s;
 }
 
@@ -382,7 +389,7 @@ Status Recovery::leave_level() {
 }
 
 // Whether the level has converged. `calm` is for how many iterations in a row it has been calm;
-// every vertex must have been awake in the last kConfirmIterations of them.
+// every vertex must have been awake in the last kConfirmIterations of them, but in a settled round.
 bool Recovery::confirmed(int calm) {
   Confirmation& c = round_.confirmation;
   const int iteration = round_.iteration;
@@ -390,6 +397,7 @@ bool Recovery::confirmed(int calm) {
     c = {0, iteration + kConfirmPause};
   }
   if (calm < kCalmIterations) return false;
+  if (round_.settled) return iteration >= kMinSettledIterations;
   const int least = mesh_.sizing != nullptr && round_.late ? kMinLateIterations : kMinIterations;
   if (c.since != 0) {
     return iteration >= least && iteration - c.since >= kConfirmIterations;

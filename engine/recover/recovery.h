@@ -148,6 +148,7 @@ class Recovery {
     int number = 0;
     bool late = false;
     bool searched_early = false, searched = false;  // for missed places, before it was confirmed
+    bool settled = false;                           // it began with all asleep but what was new
     int iteration = 0;
     int calm = 0;  // iterations in a row
     Confirmation confirmation;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/blocks.h"
 #include "engine/base/constants.h"
 #include "engine/exact/predicates.h"
 #include "engine/recover/recovery.h"
@@ -11,6 +12,21 @@
 #include "pyramid/gradient.h"
 
 namespace plc {
+
+namespace {
+
+// By (1) or (2).
+bool has_violated_edge(const Mesh& mesh, uint32_t v) {
+  for (uint32_t k = 0; k < mesh.valence(v); ++k) {
+    const uint32_t w = mesh.neighbor(v, k);
+    const float size = mesh.size_between(v, w);
+    const float squared = squared_distance(mesh.at(v), mesh.at(w));
+    if (squared <= size * size || squared >= kMaxEdge * kMaxEdge * size * size) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 // The space and the guide of level h.
 void Recovery::enter(int h) {
@@ -144,15 +160,20 @@ void Recovery::lower_sizes() {
   sizing_.field.bound_slope();
 }
 
-// What has another size than before starts anew: it is awake, and has not turned.
+// To what they are where the vertices are now. Ends of edges that violate (1) or (2) by them start
+// anew: they are awake, and have not turned.
 void Recovery::resize_all() {
-  for (uint32_t v = 0; v < mesh_.slots(); ++v) {
-    const float before = mesh_.size(v);
-    if (mesh_.alive(v)) mesh_.resize(v);
-    if (mesh_.size(v) == before) continue;
-    mesh_.wake(v);
-    mesh_.turns[v] = 0;
-  }
+  constexpr size_t kVertices = 4096;  // of a task
+  run_blocks(schedule_, mesh_.slots(), kVertices, [&](size_t, size_t begin, size_t end) {
+    for (size_t v = begin; v < end; ++v) mesh_.resize(static_cast<uint32_t>(v));
+  });
+  run_blocks(schedule_, mesh_.slots(), kVertices, [&](size_t, size_t begin, size_t end) {
+    for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
+      if (!has_violated_edge(mesh_, v)) continue;
+      mesh_.wake(v);
+      mesh_.turns[v] = 0;
+    }
+  });
 }
 
 }  // namespace plc

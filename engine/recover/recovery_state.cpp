@@ -43,6 +43,7 @@ void visit_round(Round& r, const Visit& visit) {
   visit(r.late);
   visit(r.searched_early);
   visit(r.searched);
+  visit(r.settled);
   visit(r.most_vertices);
 }
 

@@ -92,6 +92,18 @@ TEST_CASE("a vertex that is touched wakes its block", "[sleep]") {
   CHECK_FALSE(sleep.any_asleep());
 }
 
+TEST_CASE("what has settled sleeps, however it moved, until it is touched", "[sleep]") {
+  Mesh mesh;
+  fill_sphere(mesh);
+  plc::Sleep sleep(mesh, samples::kSerial, {kSpeed});
+  sleep.choose(false);
+  REQUIRE_FALSE(sleep.any_asleep());
+  sleep.settle();
+  mesh.wake(500);
+  sleep.choose(false);
+  CHECK(sleep.awake() == plc::Vector<uint32_t>{500 / plc::kRingLanes});
+}
+
 TEST_CASE("a vertex that moves along its normal wakes its neighbours, one that slides does not",
           "[sleep]") {
   Mesh mesh;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <optional>
 
 #include "engine/base/mesh_arrays.h"
 #include "engine/base/state_io.h"
@@ -10,6 +11,7 @@
 #include "engine/mesh/mesh_invariants.h"
 #include "engine/mesh/state_hash.h"
 #include "tests/samples/sample_runs.h"
+#include "tests/samples/sample_woken.h"
 
 namespace {
 
@@ -175,6 +177,41 @@ TEST_CASE("a start from the iso-surface has the sizes of its level", "[adaptive]
   CHECK(r.measures.components == 1);
   CHECK(r.measures.genus == 0);
   CHECK(r.measures.volume == Approx(3.14159 * 256 * 1.3).epsilon(0.1));
+}
+
+TEST_CASE("a search wakes what it has changed, and of a surface at rest nothing else moves",
+          "[adaptive]") {
+  Run run = direct(plate(0.65));
+  run.recovery.sizes.emplace();
+  Mesh mesh;
+  std::vector<plc::LevelRecord> records;
+  std::optional<samples::Woken> woken;
+  std::vector<double> changed, awake;  // after each search, in vertices
+  plc::RecoveryHooks hooks;
+  hooks.pass = [&](const std::string& pass, uint32_t, const plc::Evolution& evolution) {
+    if (pass == "late bubbles") woken.emplace(mesh);
+    if (pass == "ids" && woken) {
+      uint32_t count = 0;
+      for (uint32_t v = 0; v < mesh.slots(); ++v) count += (*woken)[v] ? 1 : 0;
+      changed.push_back(static_cast<double>(count) / mesh.slots());
+      woken.reset();
+    }
+    if (pass == "resolution" && awake.size() < changed.size()) {
+      awake.push_back(static_cast<double>(evolution.awake()) / mesh.padded());
+    }
+  };
+  const plc::Schedule schedule(2);
+  REQUIRE(plc::pyramidal_recover_shape(samples::pyramid_of(run), run.recovery, schedule, hooks,
+                                       mesh, records)
+              .ok());
+  REQUIRE(changed.size() == 2);
+  CAPTURE(changed, awake);
+  for (const double share : changed) {
+    CHECK(share > 0);
+    CHECK(share < 0.5);
+  }
+  CHECK(awake[0] > 0.8);
+  CHECK(awake[1] < 0.3);
 }
 
 TEST_CASE("where nothing of the iso-surface conforms bubbles start in what it is of",
