@@ -34,23 +34,44 @@ constexpr double kSeenOfNoise = 14.697, kMedian = 0.6745;
 // Of noise of variance 1, what is left in the difference of two smoothed voxels with one between.
 constexpr double kLeftOfNoise = 0.625 * 0.375 * 0.375;
 
-template <size_t kTaps>
-void convolve(const Vector<float>& from, size_t stride, const std::array<float, kTaps>& taps,
-              Vector<float>& to) {
-  const size_t margin = kTaps / 2 * stride;
-  for (size_t i = margin; i < kVolume - margin; ++i) {
-    float sum = 0;
-    for (size_t k = 0; k < kTaps; ++k) sum += taps[k] * from[i + k * stride - margin];
-    to[i] = sum;
+// The voxels of a tile and its halo that are so far from the border along each axis.
+struct Inner {
+  size_t x, y, z;
+};
+
+// visit(index of the first, how many) for the rows of those voxels.
+template <typename Visit>
+void visit_rows(const Inner& inner, const Visit& visit) {
+  for (size_t z = inner.z; z < kSide - inner.z; ++z) {
+    for (size_t y = inner.y; y < kSide - inner.y; ++y) {
+      visit(z * kPlane + y * kRow + inner.x, kSide - 2 * inner.x);
+    }
   }
 }
 
-// What lies within the taps' reach of the tile's border is of no use afterwards.
 template <size_t kTaps>
-void smooth(Vector<float>& values, const std::array<float, kTaps>& taps, Vector<float>& scratch) {
-  convolve(values, 1, taps, scratch);
-  convolve(scratch, kRow, taps, values);
-  convolve(values, kPlane, taps, scratch);
+void convolve(const Vector<float>& from, size_t stride, const std::array<float, kTaps>& taps,
+              const Inner& inner, Vector<float>& to) {
+  visit_rows(inner, [&](size_t first, size_t count) {
+    const float* const in = from.data() + first - kTaps / 2 * stride;
+    float* const out = to.data() + first;
+    for (size_t i = 0; i < count; ++i) {
+      float sum = 0;
+      for (size_t k = 0; k < kTaps; ++k) sum += taps[k] * in[i + k * stride];
+      out[i] = sum;
+    }
+  });
+}
+
+// Of the voxels `inner` from the border, by those that the taps reach from there; others are of no
+// use afterwards.
+template <size_t kTaps>
+void smooth(Vector<float>& values, const std::array<float, kTaps>& taps, size_t inner,
+            Vector<float>& scratch) {
+  const size_t outer = inner - kTaps / 2;
+  convolve(values, 1, taps, {inner, outer, outer}, scratch);
+  convolve(scratch, kRow, taps, {inner, inner, outer}, values);
+  convolve(values, kPlane, taps, {inner, inner, inner}, scratch);
   values.swap(scratch);
 }
 
@@ -125,19 +146,21 @@ class Tile {
   // Of a voxel of the image, in the values' unit, before find_tensors(); 0 where more than half of
   // them are even.
   double noise() {
-    convolve(value_, 1, kSecond, tensor_[0]);
-    convolve(tensor_[0], kRow, kSecond, scratch_);
-    convolve(scratch_, kPlane, kSecond, tensor_[0]);
+    convolve(value_, 1, kSecond, {1, 0, 0}, tensor_[0]);
+    convolve(tensor_[0], kRow, kSecond, {1, 1, 0}, scratch_);
+    convolve(scratch_, kPlane, kSecond, {1, 1, 1}, tensor_[0]);
     magnitudes_.clear();
     // What is padding, or repeated beyond the image's border, has no noise.
     const auto& [xs, ys, zs] = measured_;
+    const auto count = static_cast<size_t>(std::max(xs.second - xs.first - 2, 0));
     for (int32_t z = zs.first + 1; z < zs.second - 1; ++z) {
       for (int32_t y = ys.first + 1; y < ys.second - 1; ++y) {
         const float* row =
-            &tensor_[0][static_cast<size_t>(z) * kPlane + static_cast<size_t>(y) * kRow];
-        for (int32_t x = xs.first + 1; x < xs.second - 1; ++x) {
-          magnitudes_.push_back(std::abs(row[x]));
-        }
+            &tensor_[0][static_cast<size_t>(z) * kPlane + static_cast<size_t>(y) * kRow +
+                        static_cast<size_t>(xs.first + 1)];
+        const size_t before = magnitudes_.size();
+        magnitudes_.resize(before + count);
+        for (size_t x = 0; x < count; ++x) magnitudes_[before + x] = std::abs(row[x]);
       }
     }
     if (magnitudes_.empty()) return 0;
@@ -148,31 +171,35 @@ class Tile {
 
   // half: of a difference over two voxels, per delta.
   void find_tensors(const std::array<float, 3>& half, float iso) {
+    constexpr size_t kTensors = kHalo - kWide.size() / 2, kValues = kTensors - 1;
     for (float& v : value_) v = std::clamp(v, 0.0F, 1.0F);
-    smooth(value_, kNarrow, scratch_);
-    for (auto& t : tensor_) std::fill(t.begin(), t.end(), 0.0F);
-    std::fill(weight_.begin(), weight_.end(), 0.0F);
-    const float* v = value_.data();
-    constexpr size_t kMargin = kPlane + kRow + 1;
-    for (size_t i = kMargin; i < kVolume - kMargin; ++i) {
-      const float x = (v[i + 1] - v[i - 1]) * half[0];
-      const float y = (v[i + kRow] - v[i - kRow]) * half[1];
-      const float z = (v[i + kPlane] - v[i - kPlane]) * half[2];
-      const float squared = x * x + y * y + z * z;
-      // Within 2 delta of the iso-surface, as far as the gradient tells.
-      const float off = v[i] - iso;
-      const float near = std::max(0.0F, squared - off * off * 0.25F);
-      const float weight = squared > 0 ? near / squared : 0;
-      tensor_[0][i] = weight * x * x;
-      tensor_[1][i] = weight * y * y;
-      tensor_[2][i] = weight * z * z;
-      tensor_[3][i] = weight * x * y;
-      tensor_[4][i] = weight * x * z;
-      tensor_[5][i] = weight * y * z;
-      weight_[i] = weight;
-    }
-    for (auto& t : tensor_) smooth(t, kWide, scratch_);
-    smooth(weight_, kWide, scratch_);
+    smooth(value_, kNarrow, kValues, scratch_);
+    visit_rows({kTensors, kTensors, kTensors}, [&](size_t first, size_t count) {
+      const float* const v = value_.data() + first;
+      float* to[6];
+      for (size_t k = 0; k < 6; ++k) to[k] = tensor_[k].data() + first;
+      float* const weights = weight_.data() + first;
+      const auto slope = [&](size_t i, size_t axis, size_t stride) {
+        return (v[i + stride] - (v - stride)[i]) * half[axis];
+      };
+      for (size_t i = 0; i < count; ++i) {
+        const float x = slope(i, 0, 1), y = slope(i, 1, kRow), z = slope(i, 2, kPlane);
+        const float squared = x * x + y * y + z * z;
+        // Within 2 delta of the iso-surface, as far as the gradient tells.
+        const float off = v[i] - iso;
+        const float near = std::max(0.0F, squared - off * off * 0.25F);
+        const float weight = squared > 0 ? near / squared : 0;
+        to[0][i] = weight * x * x;
+        to[1][i] = weight * y * y;
+        to[2][i] = weight * z * z;
+        to[3][i] = weight * x * y;
+        to[4][i] = weight * x * z;
+        to[5][i] = weight * y * z;
+        weights[i] = weight;
+      }
+    });
+    for (auto& t : tensor_) smooth(t, kWide, kHalo, scratch_);
+    smooth(weight_, kWide, kHalo, scratch_);
   }
 
   // Over the voxels of a cell.

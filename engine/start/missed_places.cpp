@@ -200,8 +200,8 @@ class Search {
   struct VoxelBox {
     Voxel low, high;
   };
-  // Whether anything is missed in the slab, by squares of kSquare voxels of x and y: most of the mesh
-  // is far from all of that.
+  // Whether anything is missed in the slab, by squares of kSquare voxels of x and y: most of the
+  // mesh is far from all of that.
   using Columns = Vector<uint8_t>;
 
   std::array<float, 3> voxel_of(Vec3 p) const {
@@ -225,11 +225,26 @@ class Search {
     const std::array<float, 3> centre = voxel_of(p);
     const VoxelBox box = box_around(centre, centre, slab);
     if (!any_left(box, left)) return;
+    clear(box, [&](const Voxel& v) { return is_near(v, centre, slab.clearance); });
+  }
+  // Those of what is missed in the box for which near(voxel).
+  template <typename Near>
+  void clear(const VoxelBox& box, const Near& near) {
     for (int32_t z = box.low[2]; z <= box.high[2]; ++z) {
       for (int32_t y = box.low[1]; y <= box.high[1]; ++y) {
-        clear_row(centre, slab.clearance, y, z, box.low[0], box.high[0]);
+        for (VoxelSet& set : missed_) {
+          set.visit_row(y, z, box.low[0], box.high[0] + 1, [&](int32_t x) {
+            if (near({x, y, z})) set.erase({x, y, z});
+          });
+        }
       }
     }
+  }
+  bool is_near(const Voxel& v, const std::array<float, 3>& place, float clearance) const {
+    const float dx = (static_cast<float>(v[0]) - place[0]) * length_[0];
+    const float dy = (static_cast<float>(v[1]) - place[1]) * length_[1];
+    const float dz = (static_cast<float>(v[2]) - place[2]) * length_[2];
+    return dx * dx + dy * dy + dz * dz < clearance * clearance;
   }
   Columns columns_left(const Slab& slab) const {
     Columns left(squares(0) * squares(1), 0);
@@ -251,24 +266,29 @@ class Search {
     const Vec3 a = p[0], b = p[1], c = p[2];
     const float longest = std::max(std::max(length(b - a), length(c - b)), length(a - c));
     const int steps = static_cast<int>(std::ceil(longest / apart));
-    if (steps <= 1 || !any_near(p, slab, left)) return;
-    for (int i = 0; i <= steps; ++i) {
-      for (int j = 0; i + j <= steps; ++j) {
-        const float u = static_cast<float>(i) / static_cast<float>(steps);
-        const float w = static_cast<float>(j) / static_cast<float>(steps);
-        clear_near(a + (b - a) * u + (c - a) * w, slab, left);
+    if (steps <= 1) return;
+    const VoxelBox box = box_around_face(p, slab);
+    if (!any_left(box, left)) return;
+    clear(box, [&](const Voxel& v) {
+      for (int i = 0; i <= steps; ++i) {
+        for (int j = 0; i + j <= steps; ++j) {
+          const float u = static_cast<float>(i) / static_cast<float>(steps);
+          const float w = static_cast<float>(j) / static_cast<float>(steps);
+          if (is_near(v, voxel_of(a + (b - a) * u + (c - a) * w), slab.clearance)) return true;
+        }
       }
-    }
+      return false;
+    });
   }
   // A voxel more, as places on a face are rounded.
-  bool any_near(const std::array<Vec3, 3>& p, const Slab& slab, const Columns& left) const {
+  VoxelBox box_around_face(const std::array<Vec3, 3>& p, const Slab& slab) const {
     const std::array<float, 3> q[3] = {voxel_of(p[0]), voxel_of(p[1]), voxel_of(p[2])};
     std::array<float, 3> low, high;
     for (size_t a = 0; a < 3; ++a) {
       low[a] = std::min({q[0][a], q[1][a], q[2][a]}) - 1;
       high[a] = std::max({q[0][a], q[1][a], q[2][a]}) + 1;
     }
-    return any_left(box_around(low, high, slab), left);
+    return box_around(low, high, slab);
   }
   bool any_left(const VoxelBox& box, const Columns& left) const {
     constexpr auto kStep = static_cast<int32_t>(kSquare);
@@ -279,18 +299,6 @@ class Search {
     }
     return false;
   }
-  void clear_row(const std::array<float, 3>& centre, float clearance, int32_t y, int32_t z,
-                 int32_t low, int32_t high) {
-    for (VoxelSet& set : missed_) {
-      set.visit_row(y, z, low, high + 1, [&](int32_t x) {
-        const float dx = (static_cast<float>(x) - centre[0]) * length_[0];
-        const float dy = (static_cast<float>(y) - centre[1]) * length_[1];
-        const float dz = (static_cast<float>(z) - centre[2]) * length_[2];
-        if (dx * dx + dy * dy + dz * dz < clearance * clearance) set.erase({x, y, z});
-      });
-    }
-  }
-
   // visit(voxel) for the seed and what is connected to it; take(voxel) tells whether a neighbour is
   // of the place and new. Only the front is kept in memory.
   template <typename Visit, typename Take>
