@@ -219,8 +219,8 @@ inline constexpr double kStableDecay = 2.5;
 inline constexpr int kMinIterations = 20;
 // ... but for rounds of an adaptive mesh after the first: most of it has moved before.
 inline constexpr int kMinLateIterations = 10;
-// ... of a round after all has come to rest, in which only what is new is awake: with 10, of eight
-// images 95 % of distances are smaller by 0.7 % at most, in 3 % more time.
+// ... of a round after all has come to rest, in which only what is new is awake: with 10, mean
+// distances of eight images are the same to 0.001 voxels, 95 % of them smaller by 1.3 % at most.
 inline constexpr int kMinSettledIterations = 6;
 inline constexpr int kCalmIterations = 3;
 

@@ -300,29 +300,24 @@ bool EmbeddingGuard::clear_of(const Mesh& mesh, const Proposal& proposal, const 
   const Float4* const at = mesh.position.data();
   const Four low{box_.low[0], box_.low[1], box_.low[2], 0};
   const Four high{box_.high[0], box_.high[1], box_.high[2], 0};
-  const bool patch = mesh.is_patch();
   // What transformations are asked for lies anywhere: the rings come from far away in memory.
   for (const uint32_t* id = ids; id != ids + count; ++id) prefetch_ring_of(rings, *id);
   for (const uint32_t* id = ids; id != ids + count; ++id) {
     const uint32_t x = *id, d = rings.valence[x];
-    if (d == 0 || removed(x) || (patch && mesh.is_absent(x))) continue;
-    const uint32_t* const column = rings.columns + RingView::place(x, 0);
-    const auto slot = [&](uint32_t k) {
-      return k < kRingSlots ? column[size_t{k} * kRingLanes] : rings.slot(x, k);
-    };
+    if (d == 0 || removed(x) || mesh.is_absent(x)) continue;
     const Four at_x = load_four(at[x]);
-    uint32_t b = slot(d - 1);
+    uint32_t b = rings.slot(x, d - 1);
     // Of the edge that the face before this one shares with it.
     Four edge_low = min_four(at_x, load_four(at[b])), edge_high = max_four(at_x, load_four(at[b]));
     for (uint32_t k = 0; k < d; ++k) {
       const uint32_t a = b;
-      b = slot(k);
+      b = rings.slot(x, k);
       const Four at_b = load_four(at[b]);
       const Four face_low = min_four(edge_low, at_b), face_high = max_four(edge_high, at_b);
       edge_low = min_four(at_x, at_b);
       edge_high = max_four(at_x, at_b);
       if (!overlap_four(face_low, face_high, low, high) || !counts(x, a, b)) continue;
-      if (patch && (mesh.is_absent(a) || mesh.is_absent(b))) continue;
+      if (mesh.is_absent(a) || mesh.is_absent(b)) continue;
       if (removed(a) || removed(b) || removed_edge(x, a, b)) continue;
       const uint32_t corners[3] = {x, a, b};
       const uint32_t embedded = embedded_corners(corners);

@@ -324,9 +324,8 @@ bool Recovery::near_rest() const {
   return energy_ <= kLateEnergy * spec_.epsilon;
 }
 
-// Where something was added, another round begins. Of an adaptive mesh that is at rest all sleeps
-// then but what has been added, and what that wakes: before its first search it has moved as a
-// whole until it was calm.
+// Where something was added, another round begins. Of an adaptive mesh at rest all sleeps then but
+// what has been added, and what that wakes.
 Status Recovery::search(bool& added) {
   const bool settled = mesh_.sizing != nullptr && round_.calm >= kCalmIterations;
   if (settled) evolution_.settle();

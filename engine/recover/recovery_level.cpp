@@ -6,27 +6,14 @@
 
 #include "engine/base/blocks.h"
 #include "engine/base/constants.h"
+#include "engine/base/marks.h"
 #include "engine/exact/predicates.h"
 #include "engine/recover/recovery.h"
 #include "engine/start/folds.h"
+#include "kernels/ring_forces.h"
 #include "pyramid/gradient.h"
 
 namespace plc {
-
-namespace {
-
-// By (1) or (2).
-bool has_violated_edge(const Mesh& mesh, uint32_t v) {
-  for (uint32_t k = 0; k < mesh.valence(v); ++k) {
-    const uint32_t w = mesh.neighbor(v, k);
-    const float size = mesh.size_between(v, w);
-    const float squared = squared_distance(mesh.at(v), mesh.at(w));
-    if (squared <= size * size || squared >= kMaxEdge * kMaxEdge * size * size) return true;
-  }
-  return false;
-}
-
-}  // namespace
 
 // The space and the guide of level h.
 void Recovery::enter(int h) {
@@ -163,16 +150,20 @@ void Recovery::lower_sizes() {
 // To what they are where the vertices are now. Ends of edges that violate (1) or (2) by them start
 // anew: they are awake, and have not turned.
 void Recovery::resize_all() {
-  constexpr size_t kVertices = 4096;  // of a task
-  run_blocks(schedule_, mesh_.slots(), kVertices, [&](size_t, size_t begin, size_t end) {
+  const auto delta = static_cast<float>(mesh_.delta);
+  Buffer<uint8_t> violated(mesh_.padded());
+  run_blocks(schedule_, mesh_.slots(), kGrain, [&](size_t, size_t begin, size_t end) {
     for (size_t v = begin; v < end; ++v) mesh_.resize(static_cast<uint32_t>(v));
   });
-  run_blocks(schedule_, mesh_.slots(), kVertices, [&](size_t, size_t begin, size_t end) {
-    for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
-      if (!has_violated_edge(mesh_, v)) continue;
-      mesh_.wake(v);
-      mesh_.turns[v] = 0;
-    }
+  run_blocks(schedule_, mesh_.padded(), kGrain, [&](size_t, size_t begin, size_t end) {
+    kernels::edge_violations(
+        schedule_.simd(), mesh_.rings(), mesh_.position.data(), delta * delta,
+        kMaxEdge * kMaxEdge * delta * delta,
+        Blocks::range(static_cast<uint32_t>(begin), static_cast<uint32_t>(end)), violated.data());
+  });
+  visit_marks(violated.data(), mesh_.slots(), [&](uint32_t v) {
+    mesh_.wake(v);
+    mesh_.turns[v] = 0;
   });
 }
 

@@ -299,6 +299,7 @@ class Search {
     }
     return false;
   }
+
   // visit(voxel) for the seed and what is connected to it; take(voxel) tells whether a neighbour is
   // of the place and new. Only the front is kept in memory.
   template <typename Visit, typename Take>
