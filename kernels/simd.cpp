@@ -22,8 +22,10 @@ std::vector<SimdTarget> available_simd_targets() {
   return targets;
 }
 
+// Asked of the processor once: under a hypervisor it takes microseconds.
 SimdTarget best_simd_target() {
-  return available_simd_targets().back();
+  static const SimdTarget best = available_simd_targets().back();
+  return best;
 }
 
 std::string_view simd_target_name(SimdTarget target) {
