@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <span>
 
 #include "engine/base/blocks.h"
@@ -16,10 +15,6 @@ namespace {
 // Per task: vertices whose faces are searched, and nodes of leaves that are.
 constexpr size_t kStarBlock = 128;
 constexpr size_t kSearchBlock = 4;
-
-uint32_t lowest_bit(uint32_t mask) {
-  return static_cast<uint32_t>(std::countr_zero(mask));
-}
 
 }  // namespace
 
@@ -75,69 +70,9 @@ void MeetingSearch::search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) cons
   }
 }
 
-// Lists the nodes of leaves whose boxes overlap that of this one, itself and those after it.
-void MeetingSearch::find_near(uint32_t node, Vector<uint32_t>& near) const {
-  near.clear();
-  if (level_count_ == 2) {
-    near.push_back(node);
-    return;
-  }
-  const Box3 box = levels_[2].boxes[node / kLanes].at(node % kLanes);
-  const bool moved = levels_[1].moved[node] != 0;
-  struct Visit {
-    uint32_t level, node;
-  };
-  std::array<Visit, 16 * kLanes> stack;  // at most 7 of each level wait
-  uint32_t depth = 0;
-  stack[depth++] = {static_cast<uint32_t>(level_count_ - 1), 0};
-  while (depth != 0) {
-    const Visit at = stack[--depth];
-    const Level& level = levels_[at.level];
-    uint32_t hits = level.boxes[at.node].overlapping(box);
-    if (!moved) hits &= level.moved[at.node];
-    // Nodes before this one find the pair when it is their turn.
-    const uint32_t own = node >> (3 * (at.level - 2));  // the child of this level that holds it
-    if (own >= (at.node + 1) * kLanes) continue;
-    if (own >= at.node * kLanes) hits &= ~((1U << (own - at.node * kLanes)) - 1);
-    for (; hits != 0; hits &= hits - 1) {
-      const uint32_t child = at.node * kLanes + lowest_bit(hits);
-      if (at.level == 2) {
-        near.push_back(child);
-      } else {
-        stack[depth++] = {at.level - 1, child};
-      }
-    }
-  }
-}
-
-// Tests the faces in the leaves of one node against those in the same and in later leaves with
-// which they have no vertex in common.
-void MeetingSearch::search_leaves(const Mesh& mesh, SimdTarget simd, uint32_t node,
-                                  Scratch& scratch, Pairs& pairs) const {
-  const Level &leaves = levels_[0], &nodes = levels_[1];
-  find_near(node, scratch.near);
-  const size_t room = scratch.near.size() * kernels::kMostPairs;
-  if (scratch.candidates.size() < room) scratch.candidates.resize_uninitialized(room);
-  const kernels::FaceBoxes tree{faces_.data(), leaves.boxes.data(), leaves.moved.data(),
-                                nodes.boxes.data(), nodes.moved.data()};
-  const auto end = std::min<size_t>((size_t{node} + 1) * kLanes, leaves.boxes.size());
-  for (size_t leaf = size_t{node} * kLanes; leaf < end; ++leaf) {
-    const size_t count =
-        kernels::face_pairs(simd, tree, static_cast<uint32_t>(leaf), scratch.near.data(),
-                            scratch.near.size(), scratch.candidates.data());
-    for (size_t i = 0; i < count; ++i) {
-      const auto [f, g] = scratch.candidates[i];
-      if (triangles_intersect(make_triangle(mesh.positions, face(f)),
-                              make_triangle(mesh.positions, face(g)))) {
-        pairs.emplace_back(f, g);
-      }
-    }
-  }
-}
-
 void MeetingSearch::search(const Mesh& mesh, std::span<const uint32_t> stars,
                            const Executor& executor) {
-  const size_t nodes = levels_[1].boxes.size();
+  const size_t nodes = tree_.nodes();
   const size_t star_tasks = block_count(stars.size(), kStarBlock);
   const size_t tasks = star_tasks + block_count(nodes, kSearchBlock);
   found_.resize(std::max(found_.size(), tasks));
@@ -150,10 +85,16 @@ void MeetingSearch::search(const Mesh& mesh, std::span<const uint32_t> stars,
         search_star(mesh, stars[i], pairs);
       }
     } else {
-      const Spares<Scratch>::Lent scratch = scratches_.lend();
+      const Spares<BoxTree::Scratch>::Lent scratch = scratches_.lend();
       const size_t begin = (task - star_tasks) * kSearchBlock;
       for (size_t node = begin; node < std::min(nodes, begin + kSearchBlock); ++node) {
-        search_leaves(mesh, executor.simd(), static_cast<uint32_t>(node), *scratch, pairs);
+        tree_.pairs(executor.simd(), faces_.data(), static_cast<uint32_t>(node), *scratch,
+                    [&](uint32_t f, uint32_t g) {
+                      if (triangles_intersect(make_triangle(mesh.positions, face(f)),
+                                              make_triangle(mesh.positions, face(g)))) {
+                        pairs.emplace_back(f, g);
+                      }
+                    });
       }
     }
   });
@@ -207,9 +148,7 @@ const Vector<FacePair>& MeetingSearch::find(const RingView& rings, uint32_t slot
   list_vertices(mesh_);
   list_faces(mesh_, executor);
   if (face_count() == 0) return pairs_;
-  build_leaves(mesh_, executor);
-  do build_level(level_count_, executor);
-  while (levels_[level_count_ - 1].boxes.size() > 1);
+  build_tree(mesh_, executor);
   search(mesh_, {vertices_.data(), vertices_.size()}, executor);
   return pairs_;
 }

@@ -7,11 +7,9 @@
 #include "engine/base/four.h"
 #include "engine/base/spares.h"
 #include "engine/exact/self_intersection.h"
+#include "engine/guard/box_tree.h"
 #include "engine/mesh/mesh.h"
-#include "kernels/box_lanes.h"
-#include "kernels/face_pairs.h"
 #include "kernels/ring.h"
-#include "kernels/simd.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
 #include "pyramid/memory.h"
@@ -19,15 +17,13 @@
 namespace plc {
 
 // Faces that share a vertex are looked at vertex by vertex (vertex_star.h), and one by one only
-// where that leaves a doubt. For all others there is a tree of boxes, 8 children to a node, over
-// the faces in the order of ids: vertices are numbered along a space-filling curve, so nothing has
-// to be sorted and boxes are tight; with any other numbering results are the same and searches
-// slow. Only the faces around marked vertices are listed.
+// where that leaves a doubt. For all others there is a tree of boxes (box_tree.h) over the faces in
+// the order of ids: vertices are numbered along a space-filling curve; with any other numbering
+// results are the same and searches slow. Only the faces around marked vertices are listed.
 //
 //   buffer    bytes per listed face   what
 //   faces     12                      three ids, that which they are listed with in front
-//   boxes     27.4                    per node: boxes of 8 faces or nodes, lane by lane
-//   moved     0.15                    per node: in which of the 8 a face has moved
+//   tree      27.6                    box_tree.h
 //   vertices  4 per vertex            marked vertices and their neighbours
 //   begin     4 per vertex            of those: the first face
 //
@@ -62,12 +58,6 @@ class MeetingSearch {
   const uint32_t* face(uint32_t f) const { return faces_.data() + 3 * static_cast<size_t>(f); }
 
  private:
-  static constexpr uint32_t kLanes = BoxLanes::kLanes;
-  // Level 0: leaves, nodes of faces; level k: nodes of nodes of level k - 1. Two levels at least.
-  struct Level {
-    Buffer<BoxLanes> boxes;
-    Buffer<uint8_t> moved;  // a bit per child: some face in it has
-  };
   struct Mesh {
     RingView rings;
     uint32_t slots = 0;
@@ -105,44 +95,31 @@ class MeetingSearch {
 
   // Where a vertex is listed: vertices lie in the order of these numbers.
   static uint64_t where_listed(const Mesh& mesh, uint32_t v);
-  static Box3 all_lanes(const BoxLanes& boxes);
 
   void list_vertices(const Mesh& mesh);
   void sort_vertices(uint32_t slots);
   void place_strays(const Mesh& mesh);
   void list_faces(const Mesh& mesh, const Executor& executor);
-  void build_leaves(const Mesh& mesh, const Executor& executor);
-  void build_level(size_t level, const Executor& executor);
-  void set_face(const Mesh& mesh, uint32_t f);
-  void set_child(size_t level, size_t child);
+  void build_tree(const Mesh& mesh, const Executor& executor);
   void update_tree(const Mesh& mesh, const uint32_t* changed, size_t count);
   void list_stars(const Mesh& mesh, const uint32_t* changed, size_t count);
   void search_star(const Mesh& mesh, uint32_t v, Pairs& pairs) const;
-  struct Scratch {
-    Vector<uint32_t> near;  // nodes of leaves
-    Buffer<kernels::CandidatePair> candidates;
-  };
-  void find_near(uint32_t node, Vector<uint32_t>& near) const;
-  void search_leaves(const Mesh& mesh, SimdTarget simd, uint32_t node, Scratch& scratch,
-                     Pairs& pairs) const;
   void search(const Mesh& mesh, std::span<const uint32_t> stars, const Executor& executor);
   uint32_t index_of(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) const;
   uint64_t place_of(const Mesh& mesh, uint32_t f) const;
   void sort_pairs(const Mesh& mesh);
 
-  Spares<Scratch> scratches_;
+  Spares<BoxTree::Scratch> scratches_;
   Mesh mesh_;                  // of the last find()
   Buffer<uint32_t> vertices_;  // by where_listed()
   Buffer<uint8_t> listed_;     // per vertex
   Buffer<uint8_t> changed_;    // per vertex; 0 between calls
   Vector<uint32_t> stars_;     // around which faces are tested against each other
-  Vector<uint32_t> nodes_;     // that are brought up to date
   size_t face_count_ = 0;
   Buffer<uint32_t> faces_;
   Buffer<uint32_t> begin_;  // per listed vertex, and one more
   Buffer<uint32_t> block_faces_;
-  Vector<Level> levels_;
-  size_t level_count_ = 0;
+  BoxTree tree_;
   Vector<Pairs> found_;
   Pairs pairs_;
 };

@@ -41,8 +41,10 @@ HalfEdges::HalfEdges(const MeshArraysOf<float>& mesh, const Executor& executor)
   });
 }
 
-void HalfEdges::contract(uint32_t h) {
+HalfEdges::Contraction HalfEdges::contract(uint32_t h) {
   const uint32_t v = from(h), w = to(h), t = twin(h);
+  const uint32_t x = from(previous(h)), y = from(previous(t));
+  const Contraction done{h, v, w, {out_[v], out_[w], out_[x], out_[y]}};
   uint32_t g = t;
   do {
     corner_[g] = v;
@@ -58,6 +60,26 @@ void HalfEdges::contract(uint32_t h) {
   remove_face(h);
   remove_face(t);
   out_[w] = kNone;
+  return done;
+}
+
+// The half-edges of the two faces still know their twins.
+void HalfEdges::undo(const Contraction& done) {
+  const auto& [h, v, w, outs] = done;
+  const uint32_t t = twin(h);
+  const uint32_t x = from(twin(next(h))), y = from(twin(next(t)));
+  for (const uint32_t gone : {h, t}) {
+    join(next(gone), twin(next(gone)));
+    join(previous(gone), twin(previous(gone)));
+  }
+  corner_[h] = v, corner_[next(h)] = w, corner_[previous(h)] = x;
+  corner_[next(t)] = v, corner_[previous(t)] = y;
+  uint32_t g = t;
+  do {
+    corner_[g] = w;
+    g = around(g);
+  } while (g != t);
+  out_[v] = outs[0], out_[w] = outs[1], out_[x] = outs[2], out_[y] = outs[3];
 }
 
 void HalfEdges::remove_face(uint32_t h) {

@@ -53,21 +53,17 @@ class HalfEdges {
   const uint32_t* face(size_t f) const { return corner_.data() + 3 * f; }
   bool face_alive(size_t f) const { return corner_[3 * f] != kNone; }
 
+  // What it takes to undo a contraction.
+  struct Contraction {
+    uint32_t h, v, w;  // of v -> w, that w was merged into v by
+    std::array<uint32_t, 4>
+        outs;  // as out() was of v, w, and the neighbours that they had in common
+  };
   // Merges to(h) into from(h). Their ends have two neighbours in common, of more than three
   // neighbours each.
-  void contract(uint32_t h);
-  // What contractions change, to be kept and put back.
-  struct HalfEdge {
-    uint32_t id, from, twin;
-  };
-  HalfEdge half_edge(uint32_t h) const { return {h, corner_[h], twin_[h]}; }
-  // Nothing is written where h began before: a face across the edge of what one thread changes may
-  // be read by others.
-  void put_back(const HalfEdge& h) {
-    if (corner_[h.id] != h.from) corner_[h.id] = h.from;
-    twin_[h.id] = h.twin;
-  }
-  void put_back(uint32_t v, uint32_t out) { out_[v] = out; }
+  Contraction contract(uint32_t h);
+  // Of contractions around the same vertices the last one first.
+  void undo(const Contraction& done);
 
  private:
   void join(uint32_t g, uint32_t h) {

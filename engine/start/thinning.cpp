@@ -5,14 +5,15 @@
 #include <cmath>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "engine/base/blocks.h"
 #include "engine/base/constants.h"
 #include "engine/base/marks.h"
 #include "engine/base/spares.h"
-#include "engine/exact/face_tree.h"
 #include "engine/exact/triangle_intersection.h"
 #include "engine/exact/vertex_star.h"
+#include "engine/guard/box_tree.h"
 #include "engine/guard/self_meeting.h"
 #include "engine/resolve/refinement.h"
 #include "engine/start/half_edges.h"
@@ -139,13 +140,14 @@ class Thinning {
   // What a task needs for a block.
   struct Scratch {
     Ring ring;
-    Vector<HalfEdges::HalfEdge> half_edges;  // as they were, of all faces within the block
-    Vector<uint32_t> out;                    // ... of its vertices
+    Vector<HalfEdges::Contraction> done;
+    std::array<size_t, kSteps> before_step{};  // of those: how many came before each step
     Vector<Face> faces, before;  // ascending by their first corners; what was listed last
-    Vector<double> xyz;
-    Vector<uint32_t> abc, ids;
-    FaceTree tree;
-    Vector<uint32_t> meeting;  // vertices
+    Vector<uint32_t> corners;    // of all faces
+    BoxTree tree;
+    BoxTree::Scratch found;
+    Vector<std::pair<uint32_t, uint32_t>> doubtful;  // vertices, and a face of each
+    Vector<uint32_t> meeting;                        // vertices
   };
 
   void mark_border(const uint32_t* abc) {
@@ -158,50 +160,43 @@ class Thinning {
   bool has(uint32_t v, uint8_t flag) const { return (flags_[v] & flag) != 0; }
 
   // Of two faces that meet one has changed: of what was merged into its corners something took part
-  // in a step, and does so no more. So this ends.
+  // in a step, and does so no more. So this ends. Steps before that are as they were.
   void thin_out(uint32_t block, Scratch& s) {
-    save(block, s);
     s.faces.clear();
-    for (int i = 0; merge(block, s.ring); ++i) {
+    s.done.clear();
+    uint8_t from = 0;
+    for (int i = 0;; ++i) {
+      for (uint8_t step = from; step < kSteps; ++step) {
+        s.before_step[step] = s.done.size();
+        merge(block, step, s);
+      }
+      if (s.done.empty()) return;
       list_faces(block, i == 0, s);
       find_meeting(block, s);
       if (s.meeting.empty()) return;
+      from = i < kTries ? kSteps : 0;
       for (const uint32_t v : grid_->vertices(block)) {
         const bool meets = std::binary_search(s.meeting.begin(), s.meeting.end(), left_of(v));
-        if (meets && steps_[v] > 0) --steps_[v];
+        if (meets && steps_[v] > 0) from = std::min(from, --steps_[v]);
         if (i >= kTries) steps_[v] = 0;
       }
-      restore(block, s);
+      undo(block, s.before_step[from], s);
     }
   }
-  void save(uint32_t block, Scratch& s) const {
-    s.half_edges.clear();
-    s.out.clear();
+  // All but the first contractions.
+  void undo(uint32_t block, size_t first, Scratch& s) {
+    for (; s.done.size() > first; s.done.pop_back()) {
+      mesh_.undo(s.done.back());
+      into_[s.done.back().w] = s.done.back().w;
+    }
+    for (const uint32_t v : grid_->vertices(block)) flags_[v] &= kAtBorder;
+    for (const HalfEdges::Contraction& c : s.done) flags_[c.v] |= kGrown;
+  }
+  void merge(uint32_t block, uint8_t step, Scratch& s) {
     for (const uint32_t v : grid_->vertices(block)) {
-      s.out.push_back(mesh_.out(v));
-      mesh_.visit_ring(v, [&](uint32_t h) {
-        // Others have not to do with this block alone, and do not change.
-        if (grid_->block(mesh_.to(h)) == block) s.half_edges.push_back(mesh_.half_edge(h));
-      });
-    }
-  }
-  void restore(uint32_t block, const Scratch& s) {
-    for (const HalfEdges::HalfEdge& h : s.half_edges) mesh_.put_back(h);
-    size_t i = 0;
-    for (const uint32_t v : grid_->vertices(block)) {
-      mesh_.put_back(v, s.out[i++]);
-      into_[v] = v;
-      flags_[v] &= kAtBorder;
-    }
-  }
-  bool merge(uint32_t block, Ring& ring) {
-    bool any = false;
-    for (uint8_t step = 0; step < kSteps; ++step) {
-      for (const uint32_t v : grid_->vertices(block)) {
-        while (merges(v, step) && merge_one(v, step, ring)) any = true;
+      while (merges(v, step) && merge_one(v, step, s)) {
       }
     }
-    return any;
   }
   bool merges(uint32_t v, uint8_t step) const {
     return mesh_.alive(v) && !has(v, kAtBorder) && steps_[v] > step;
@@ -213,7 +208,8 @@ class Thinning {
   }
   // Merges the first neighbour into v that may be. All neighbours are of the block: v is not at its
   // border.
-  bool merge_one(uint32_t v, uint8_t step, Ring& ring) {
+  bool merge_one(uint32_t v, uint8_t step, Scratch& s) {
+    Ring& ring = s.ring;
     list_ring(v, ring);
     for (const uint32_t w : ring) flags_[w] |= kInRing;
     const uint32_t h = first_to_merge(v, step, ring);
@@ -221,7 +217,7 @@ class Thinning {
     if (h == HalfEdges::kNone) return false;
     into_[mesh_.to(h)] = v;
     flags_[v] |= kGrown;
-    mesh_.contract(h);
+    s.done.push_back(mesh_.contract(h));
     return true;
   }
   uint32_t first_to_merge(uint32_t v, uint8_t step, const Ring& ring) const {
@@ -310,40 +306,56 @@ class Thinning {
   // Lists the corners of faces that meet, of which one has changed.
   void find_meeting(uint32_t block, Scratch& s) {
     s.meeting.clear();
-    s.xyz.clear();
-    s.ids.clear();
+    s.corners.clear();
     for (const Face& face : s.faces) {
-      for (const uint32_t v : face.corner) {
-        const Vec3 p = places_[v].at;
-        s.xyz.insert(s.xyz.end(), {p.x, p.y, p.z});
-      }
-      if (face.fresh) s.ids.push_back(static_cast<uint32_t>(&face - s.faces.data()));
+      s.corners.insert(s.corners.end(), face.corner.begin(), face.corner.end());
     }
-    s.abc.resize(3 * s.faces.size());
-    std::iota(s.abc.begin(), s.abc.end(), 0U);
-    s.tree.build(s.xyz.data(), s.abc.data(), s.ids.data(), s.ids.size(), SerialExecutor());
-    const auto meet = [&](uint32_t f, uint32_t g) {
+    s.corners.resize(BoxTree::room_for(s.faces.size()), 0);
+    s.tree.build(s.faces.size(), SerialExecutor(executor_.simd()), [&](size_t f) {
+      return BoxTree::Face{box_of(s.faces[f]), s.faces[f].fresh};
+    });
+    const auto test = [&](uint32_t f, uint32_t g) {
       Face &a = s.faces[f], &b = s.faces[g];
-      if ((!a.changed && !b.changed) || share_embedded(a, b, block) ||
-          !triangles_intersect(triangle(a), triangle(b))) {
-        return;
+      if ((a.changed || b.changed) && triangles_intersect(triangle(a), triangle(b))) {
+        a.meets = b.meets = true;
+        s.meeting.insert(s.meeting.end(), a.corner.begin(), a.corner.end());
+        s.meeting.insert(s.meeting.end(), b.corner.begin(), b.corner.end());
       }
-      a.meets = b.meets = true;
-      s.meeting.insert(s.meeting.end(), a.corner.begin(), a.corner.end());
-      s.meeting.insert(s.meeting.end(), b.corner.begin(), b.corner.end());
     };
-    for (size_t leaf = 0; leaf < s.tree.leaf_count(); ++leaf) s.tree.overlapping_pairs(leaf, meet);
-    for (uint32_t f = 0; f < s.faces.size(); ++f) {
-      if (s.faces[f].fresh) continue;
-      const double* p = s.xyz.data() + size_t{9} * f;
-      double low[3], high[3];
-      for (size_t k = 0; k < 3; ++k) {
-        low[k] = std::min({p[k], p[k + 3], p[k + 6]});
-        high[k] = std::max({p[k], p[k + 3], p[k + 6]});
+    for (uint32_t node = 0; node < s.tree.nodes(); ++node) {
+      s.tree.pairs(executor_.simd(), s.corners.data(), node, s.found, test);
+    }
+    list_doubtful(block, s);
+    for (auto first = s.doubtful.cbegin(); first != s.doubtful.cend(); ++first) {
+      for (auto g = first + 1; g != s.doubtful.cend() && g->first == first->first; ++g) {
+        const Face &a = s.faces[first->second], &b = s.faces[g->second];
+        if ((a.fresh || b.fresh) && !share_embedded(a, b, block)) test(first->second, g->second);
       }
-      s.tree.within(low, high, [&](uint32_t g) { meet(f, g); });
     }
     std::sort(s.meeting.begin(), s.meeting.end());
+  }
+  // Vertices with faces of which some may meet each other, though they share it, and these faces.
+  void list_doubtful(uint32_t block, Scratch& s) {
+    const auto within = [&](uint32_t v) { return grid_->block(v) == block; };
+    for (const Face& face : s.faces) {
+      if (!face.changed) continue;
+      for (const uint32_t v : face.corner) {
+        if (within(v)) is_embedded(v);
+      }
+    }
+    s.doubtful.clear();
+    for (uint32_t f = 0; f < s.faces.size(); ++f) {
+      for (const uint32_t v : s.faces[f].corner) {
+        if (!within(v) || (has(v, kSeen) && !has(v, kEmbedded))) s.doubtful.emplace_back(v, f);
+      }
+    }
+    std::sort(s.doubtful.begin(), s.doubtful.end());
+  }
+  Box3 box_of(const Face& face) const {
+    const Vec3 a = places_[face.corner[0]].at, b = places_[face.corner[1]].at,
+               c = places_[face.corner[2]].at;
+    return {{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
+            {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})}};
   }
   bool share_embedded(const Face& a, const Face& b, uint32_t block) {
     return std::any_of(a.corner.begin(), a.corner.end(), [&](uint32_t v) {

@@ -1,7 +1,6 @@
-// The listed faces of a search for meetings, and the tree of boxes over them.
+// The listed faces of a search for meetings.
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <span>
 
 #include "engine/base/blocks.h"
@@ -13,10 +12,7 @@
 namespace plc {
 namespace {
 
-// Per task: vertices whose faces are listed, and nodes that are built.
-constexpr size_t kVertexBlock = 128;
-constexpr size_t kNodeBlock = 128;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr size_t kVertexBlock = 128;  // per task: vertices whose faces are listed
 
 Box3 box_of(const Float4* positions, const uint32_t* abc) {
   const FaceBox box = face_box(positions, abc);
@@ -24,15 +20,6 @@ Box3 box_of(const Float4* positions, const uint32_t* abc) {
 }
 
 }  // namespace
-
-Box3 MeetingSearch::all_lanes(const BoxLanes& b) {
-  Box3 box{};
-  for (int axis = 0; axis < 3; ++axis) {
-    box.low[axis] = *std::min_element(b.low[axis], b.low[axis] + kLanes);
-    box.high[axis] = *std::max_element(b.high[axis], b.high[axis] + kLanes);
-  }
-  return box;
-}
 
 // The marked vertices and their neighbours; all vertices where there are no marks.
 void MeetingSearch::list_vertices(const Mesh& mesh) {
@@ -152,7 +139,7 @@ void MeetingSearch::list_faces(const Mesh& mesh, const Executor& executor) {
   }
   face_count_ = total;
   // Whole leaves: kernels read the ids of all lanes.
-  faces_.resize_uninitialized(3 * block_count(total, kLanes) * kLanes);
+  faces_.resize_uninitialized(BoxTree::room_for(total));
   std::fill(faces_.begin() + 3 * static_cast<std::ptrdiff_t>(total), faces_.end(), 0U);
   begin_.resize_uninitialized(count + 1);
   begin_[count] = total;
@@ -167,90 +154,25 @@ void MeetingSearch::list_faces(const Mesh& mesh, const Executor& executor) {
   });
 }
 
-void MeetingSearch::build_leaves(const Mesh& mesh, const Executor& executor) {
-  if (levels_.empty()) levels_.emplace_back();
-  level_count_ = 1;
-  Level& level = levels_[0];
-  const size_t count = block_count(face_count(), kLanes);
-  level.boxes.resize_uninitialized(count);
-  level.moved.resize_uninitialized(count);
-  run_blocks(executor, count, kNodeBlock, [&](size_t, size_t begin, size_t end) {
-    for (size_t leaf = begin; leaf < end; ++leaf) {
-      BoxLanes& boxes = level.boxes[leaf];
-      uint32_t moved = 0;
-      const auto used =
-          static_cast<uint32_t>(std::min<size_t>(kLanes, face_count() - leaf * kLanes));
-      for (uint32_t k = 0; k < used; ++k) {
-        const uint32_t* abc = face(static_cast<uint32_t>(leaf * kLanes + k));
-        boxes.set(k, box_of(mesh.positions, abc));
-        moved |= static_cast<uint32_t>(mesh.moved(abc)) << k;
-      }
-      for (uint32_t k = used; k < kLanes; ++k) {
-        boxes.set(k, {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
-      }
-      level.moved[leaf] = static_cast<uint8_t>(moved);
-    }
+void MeetingSearch::build_tree(const Mesh& mesh, const Executor& executor) {
+  tree_.build(face_count(), executor, [&](size_t f) {
+    const uint32_t* abc = face(static_cast<uint32_t>(f));
+    return BoxTree::Face{box_of(mesh.positions, abc), mesh.moved(abc)};
   });
-}
-
-void MeetingSearch::build_level(size_t index, const Executor& executor) {
-  if (levels_.size() <= index) levels_.emplace_back();
-  level_count_ = index + 1;
-  Level& level = levels_[index];
-  const Level& below = levels_[index - 1];
-  const size_t children = below.boxes.size(), count = block_count(children, kLanes);
-  level.boxes.resize_uninitialized(count);
-  level.moved.resize_uninitialized(count);
-  run_blocks(executor, count, kNodeBlock, [&](size_t, size_t begin, size_t end) {
-    for (size_t node = begin; node < end; ++node) {
-      uint32_t moved = 0;
-      for (uint32_t k = 0; k < kLanes; ++k) {
-        const size_t child = node * kLanes + k;
-        const bool used = child < children;
-        level.boxes[node].set(k, used ? all_lanes(below.boxes[child])
-                                      : Box3{{kInfinity, kInfinity, kInfinity},
-                                             {-kInfinity, -kInfinity, -kInfinity}});
-        moved |= static_cast<uint32_t>(used && below.moved[child] != 0) << k;
-      }
-      level.moved[node] = static_cast<uint8_t>(moved);
-    }
-  });
-}
-
-void MeetingSearch::set_face(const Mesh& mesh, uint32_t f) {
-  levels_[0].boxes[f / kLanes].set(f % kLanes, box_of(mesh.positions, face(f)));
-  levels_[0].moved[f / kLanes] |= static_cast<uint8_t>(1U << (f % kLanes));
-  nodes_.push_back(f / kLanes);
-}
-
-// Node `child` of the level below has a face that has moved.
-void MeetingSearch::set_child(size_t level, size_t child) {
-  levels_[level].boxes[child / kLanes].set(child % kLanes,
-                                           all_lanes(levels_[level - 1].boxes[child]));
-  levels_[level].moved[child / kLanes] |= static_cast<uint8_t>(1U << (child % kLanes));
 }
 
 void MeetingSearch::update_tree(const Mesh& mesh, const uint32_t* changed, size_t count) {
-  for (size_t level = 0; level < level_count_; ++level) {
-    std::fill(levels_[level].moved.begin(), levels_[level].moved.end(), uint8_t{0});
-  }
-  nodes_.clear();
+  tree_.set_still();
   for (const uint32_t v : std::span(changed, count)) {
     const uint32_t valence = mesh.rings.valence[v];
     for (uint32_t k = 0; k < valence; ++k) {
       const std::array<uint32_t, 3> abc{v, mesh.rings.slot(v, k),
                                         mesh.rings.slot(v, k + 1 == valence ? 0 : k + 1)};
-      if (mesh.listed(abc.data())) set_face(mesh, index_of(mesh, abc[0], abc[1], abc[2]));
+      if (!mesh.listed(abc.data())) continue;
+      tree_.set(index_of(mesh, abc[0], abc[1], abc[2]), box_of(mesh.positions, abc.data()));
     }
   }
-  for (size_t level = 1; level < level_count_; ++level) {
-    std::sort(nodes_.begin(), nodes_.end());
-    nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
-    for (uint32_t& node : nodes_) {
-      set_child(level, node);
-      node /= kLanes;
-    }
-  }
+  tree_.update();
 }
 
 }  // namespace plc
