@@ -24,6 +24,7 @@ class Buffer {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
+  using value_type = T;
   static constexpr size_t kAlignment = 64;
 
   Buffer() = default;

@@ -1,24 +1,46 @@
-// Bytes that several tasks of a loop set to the same value, in no order.
+// Numbers that several tasks of a loop read and set, in no order.
 #pragma once
 #include <atomic>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 namespace plc {
 
+// replace_mark(): to `value` where it was `was`; whether it was.
 #if defined(__cpp_lib_atomic_ref)
-inline uint8_t read_mark(uint8_t& mark) {
-  return std::atomic_ref<uint8_t>(mark).load(std::memory_order_relaxed);
+template <typename T>
+T read_mark(T& mark) {
+  return std::atomic_ref<T>(mark).load(std::memory_order_relaxed);
 }
-inline void set_mark(uint8_t& mark, uint8_t value) {
-  std::atomic_ref<uint8_t>(mark).store(value, std::memory_order_relaxed);
+template <typename T>
+void set_mark(T& mark, std::type_identity_t<T> value) {
+  std::atomic_ref<T>(mark).store(value, std::memory_order_relaxed);
+}
+template <typename T>
+bool replace_mark(T& mark, std::type_identity_t<T> was, std::type_identity_t<T> value) {
+  return std::atomic_ref<T>(mark).compare_exchange_strong(was, value, std::memory_order_relaxed);
+}
+template <typename T>
+void add_to_mark(T& mark, std::type_identity_t<T> more) {
+  std::atomic_ref<T>(mark).fetch_add(more, std::memory_order_relaxed);
 }
 #elif defined(__GNUC__)  // Clang's library had none before its version 19
-inline uint8_t read_mark(uint8_t& mark) {
+template <typename T>
+T read_mark(T& mark) {
   return __atomic_load_n(&mark, __ATOMIC_RELAXED);
 }
-inline void set_mark(uint8_t& mark, uint8_t value) {
+template <typename T>
+void set_mark(T& mark, std::type_identity_t<T> value) {
   __atomic_store_n(&mark, value, __ATOMIC_RELAXED);
+}
+template <typename T>
+bool replace_mark(T& mark, std::type_identity_t<T> was, std::type_identity_t<T> value) {
+  return __atomic_compare_exchange_n(&mark, &was, value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+}
+template <typename T>
+void add_to_mark(T& mark, std::type_identity_t<T> more) {
+  __atomic_fetch_add(&mark, more, __ATOMIC_RELAXED);
 }
 #else
 #error "std::atomic_ref is needed"

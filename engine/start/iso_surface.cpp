@@ -6,15 +6,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <utility>
 
 #include "engine/base/blocks.h"
-#include "engine/base/disjoint_sets.h"
 #include "engine/mesh/face_rings.h"
 #include "engine/start/joined_voxels.h"
+#include "engine/start/small_parts.h"
 #include "kernels/image_value.h"
 #include "pyramid/memory.h"
 
@@ -34,7 +33,7 @@ constexpr uint32_t kTetrahedra[6][4] = {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}
 // Even permutations that put the corner, or the two corners, of one side first.
 constexpr uint32_t kOneFirst[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 0, 1, 3}, {3, 0, 2, 1}};
 
-using Face = std::array<uint32_t, 3>;
+constexpr uint32_t kAllCorners = 255;
 
 // The lattice: the voxels, and one point more on every side that is outside.
 class Lattice {
@@ -141,25 +140,41 @@ void visit_cells(const Lattice& lattice, const Vector<uint8_t>& inside,
   }
 }
 
-// visit(x, y, crossed) for the points of a slice at which edges begin that are crossed, in the
-// order of ids: bit d - 1 of `crossed` is set for the edge of direction d. above: the next slice.
-// Points of the last row and column are outside, and so are those that they would lead to.
+// visit(x, y, inside) for the points of a slice at which edges begin that are crossed, in the order
+// of ids: bit c of `inside` is set where corner c of the cell is. above: the next slice. Points of
+// the last row and column are outside, and so are those that they would lead to.
 template <typename Visit>
 void visit_crossed(const Lattice& lattice, const Vector<uint8_t>& inside,
                    const Vector<uint8_t>& above, const Visit& visit) {
   const size_t nx = lattice.columns();
   visit_cells(lattice, inside, above, [&](size_t x, size_t y) {
     const size_t i = lattice.point(x, y);
-    const uint8_t others[kDirections] = {inside[i + 1],    inside[i + nx], inside[i + nx + 1],
-                                         above[i],         above[i + 1],   above[i + nx],
-                                         above[i + nx + 1]};
-    uint32_t crossed = 0;
-    for (uint32_t k = 0; k < kDirections; ++k) {
-      crossed |= static_cast<uint32_t>(others[k] != inside[i]) << k;
-    }
-    if (crossed != 0) visit(x, y, crossed);
+    const uint8_t corners[kDirections + 1] = {inside[i],          inside[i + 1],    inside[i + nx],
+                                              inside[i + nx + 1], above[i],         above[i + 1],
+                                              above[i + nx],      above[i + nx + 1]};
+    uint32_t bits = 0;
+    for (uint32_t c = 0; c <= kDirections; ++c) bits |= static_cast<uint32_t>(corners[c]) << c;
+    if (bits != 0 && bits != kAllCorners) visit(x, y, bits);
   });
 }
+
+// Bit d - 1: the edge of direction d from the first corner of a cell is crossed.
+uint32_t crossed_edges(uint32_t inside) {
+  return ((inside & 1) != 0 ? ~inside & kAllCorners : inside) >> 1;
+}
+
+// How many faces there are in a cell.
+constexpr std::array<uint8_t, kAllCorners + 1> kFaces = [] {
+  std::array<uint8_t, kAllCorners + 1> faces{};
+  for (uint32_t inside = 0; inside <= kAllCorners; ++inside) {
+    for (const auto& tetrahedron : kTetrahedra) {
+      uint32_t count = 0;
+      for (const uint32_t corner : tetrahedron) count += inside >> corner & 1;
+      faces[inside] = static_cast<uint8_t>(faces[inside] + (count % 4 == 0 ? 0 : 2 - count % 2));
+    }
+  }
+  return faces;
+}();
 
 size_t count_of(uint32_t bits) {
   return static_cast<size_t>(std::popcount(bits));
@@ -183,7 +198,8 @@ class Builder {
       : lattice_(object, values),
         executor_(executor),
         layers_(lattice_.slices() - 1),
-        first_id_(layers_ + 1, 0) {}
+        first_id_(layers_ + 1, 0),
+        first_face_(layers_ + 1, 0) {}
 
   Status count() {
     for_layers([&](size_t, size_t begin, size_t end) {
@@ -191,13 +207,17 @@ class Builder {
       lattice_.classify(begin, inside);
       for (size_t z = begin; z < end; ++z) {
         lattice_.classify(z + 1, above);
-        visit_crossed(lattice_, inside, above, [&](size_t, size_t, uint32_t crossed) {
-          first_id_[z + 1] += count_of(crossed);
+        visit_crossed(lattice_, inside, above, [&](size_t, size_t, uint32_t corners) {
+          first_id_[z + 1] += count_of(crossed_edges(corners));
+          first_face_[z + 1] += kFaces[corners];
         });
         inside.swap(above);
       }
     });
-    for (size_t z = 0; z < layers_; ++z) first_id_[z + 1] += first_id_[z];
+    for (size_t z = 0; z < layers_; ++z) {
+      first_id_[z + 1] += first_id_[z];
+      first_face_[z + 1] += first_face_[z];
+    }
     if (vertex_count() == 0) {
       return {ErrorCode::kInvalidData,
               "no iso-surface: no voxel of the image is inside; check the iso-value"};
@@ -215,28 +235,32 @@ class Builder {
     voxel_ = voxel;
     if (voxel_ != nullptr) voxel_->resize(vertex_count());
     march_all();
-    const Vector<uint32_t> abc = faces();
-    const FaceRings rings(abc.data(), abc.size() / 3, vertex_count(), executor_);
-    fill_from_rings(mesh, xyz_.data(), vertex_count(), rings);
+    const FaceRings rings(all_.abc.data(), all_.abc.size() / 3, vertex_count(), executor_);
+    fill_from_rings(mesh, all_.xyz.data(), vertex_count(), rings);
   }
 
   // As iso_crossings() has it.
   Crossings crossings(int64_t least) {
-    if (least > 0) points_.resize(vertex_count(), 0);
+    if (least > 0) points_.resize(vertex_count());
     march_all();
-    if (least > 0) leave_out(least);
-    Crossings all{std::move(xyz_), faces()};
-    if (least > 0) close_gaps(all);
-    return all;
+    if (least > 0) {
+      const auto is_joined_at = [&](uint32_t v) {
+        return is_joined(lattice_.inside_of(&all_.xyz[3 * size_t{v}]), static_cast<size_t>(least),
+                         [&](const Voxel& voxel) { return lattice_.has(voxel); });
+      };
+      leave_out_small_parts(points_, least, is_joined_at, executor_, all_);
+    }
+    return std::move(all_);
   }
 
  private:
   size_t vertex_count() const { return first_id_[layers_]; }
 
   void march_all() {
-    xyz_.resize(3 * vertex_count());
-    faces_.resize(block_count(layers_, kLayers));
-    for_layers([&](size_t block, size_t begin, size_t end) {
+    all_.xyz.resize_uninitialized(3 * vertex_count());
+    all_.abc.resize_uninitialized(3 * first_face_[layers_]);
+    for_layers([&](size_t, size_t begin, size_t end) {
+      uint32_t* abc = all_.abc.data() + 3 * first_face_[begin];
       Slice lower, upper;
       Vector<uint8_t> above;
       lattice_.classify(begin, lower.inside);
@@ -246,38 +270,11 @@ class Builder {
         place(z, lower, upper.inside);
         lattice_.classify(z + 2, above);
         number(z + 1, upper, above);
-        march(lower, upper, faces_[block]);
+        abc = march(lower, upper, abc);
         std::swap(lower, upper);
         upper.inside.swap(above);
       }
     });
-  }
-
-  // Of all blocks; those are given away.
-  Vector<uint32_t> faces() {
-    Vector<uint32_t> abc;
-    size_t count = 0;
-    for (const auto& part : faces_) count += part.size();
-    abc.reserve(3 * count);
-    for (auto& part : faces_) {
-      for (const Face& f : part) abc.insert(abc.end(), f.begin(), f.end());
-      part = {};
-    }
-    return abc;
-  }
-
-  // Leaves vertices without a face out; the others keep their order.
-  static void close_gaps(Crossings& all) {
-    Vector<uint32_t> id(all.xyz.size() / 3, 0);
-    for (const uint32_t v : all.abc) id[v] = 1;
-    uint32_t used = 0;
-    for (size_t v = 0; v < id.size(); ++v) {
-      if (id[v] == 0) continue;
-      for (size_t a = 0; a < 3; ++a) all.xyz[3 * size_t{used} + a] = all.xyz[3 * v + a];
-      id[v] = used++;
-    }
-    all.xyz.resize(3 * size_t{used});
-    for (uint32_t& v : all.abc) v = id[v];
   }
 
   // body(block, begin, end) over layers of cells; layer z lies between the slices z and z + 1.
@@ -291,7 +288,8 @@ class Builder {
     slice.crossed.resize(lattice_.slice_points());
     slice.first.resize(lattice_.slice_points());
     auto id = static_cast<uint32_t>(first_id_[z]);
-    visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, uint32_t crossed) {
+    visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, uint32_t corners) {
+      const uint32_t crossed = crossed_edges(corners);
       const size_t point = lattice_.point(x, y);
       slice.crossed[point] = static_cast<uint8_t>(crossed);
       slice.first[point] = id;
@@ -302,12 +300,13 @@ class Builder {
   // The positions of the vertices of slice z.
   void place(size_t z, const Slice& slice, const Vector<uint8_t>& above) {
     size_t id = first_id_[z];
-    visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, uint32_t crossed) {
-      const bool here = slice.inside[lattice_.point(x, y)] != 0;
-      for (; crossed != 0; crossed &= crossed - 1, ++id) {
+    visit_crossed(lattice_, slice.inside, above, [&](size_t x, size_t y, uint32_t corners) {
+      const bool here = (corners & 1) != 0;
+      for (uint32_t crossed = crossed_edges(corners); crossed != 0; crossed &= crossed - 1, ++id) {
         const auto d = static_cast<size_t>(std::countr_zero(crossed)) + 1;
         const Vec3 p = lattice_.crossing(x, y, z, d);
-        xyz_[3 * id] = p.x, xyz_[3 * id + 1] = p.y, xyz_[3 * id + 2] = p.z;
+        float* xyz = all_.xyz.data() + 3 * id;
+        xyz[0] = p.x, xyz[1] = p.y, xyz[2] = p.z;
         if (d == 1 && !points_.empty()) {
           points_[id] = static_cast<int32_t>(here ? x + 1 : -(x + 1));
         }
@@ -320,39 +319,39 @@ class Builder {
     });
   }
 
-  void march(const Slice& lower, const Slice& upper, Vector<Face>& out) const {
+  // Writes the faces between two slices; what is behind them.
+  uint32_t* march(const Slice& lower, const Slice& upper, uint32_t* out) const {
     const size_t nx = lattice_.columns();
-    visit_cells(lattice_, lower.inside, upper.inside, [&](size_t x, size_t y) {
+    visit_crossed(lattice_, lower.inside, upper.inside, [&](size_t x, size_t y, uint32_t inside) {
       const size_t i = lattice_.point(x, y);
       const size_t at[4] = {i, i + 1, i + nx, i + nx + 1};
-      uint32_t inside = 0;
-      for (uint32_t c = 0; c < 4; ++c) {
-        inside |= static_cast<uint32_t>(lower.inside[at[c]]) << c;
-        inside |= static_cast<uint32_t>(upper.inside[at[c]]) << (c + 4);
-      }
-      if (inside == 0 || inside == 255) return;
       // The vertex between two corners of a tetrahedron: one contains the bits of the other.
       const auto between = [&](uint32_t p, uint32_t q) {
         const uint32_t low = p & q;
         const Slice& slice = low < 4 ? lower : upper;
         return slice.id(at[low & 3], p ^ q);
       };
-      for (const auto& tetrahedron : kTetrahedra) cut(tetrahedron, inside, between, out);
+      for (const auto& tetrahedron : kTetrahedra) out = cut(tetrahedron, inside, between, out);
     });
+    return out;
   }
 
   // The one or two faces in a tetrahedron, away from its corners that are inside.
   template <typename Between>
-  static void cut(const uint32_t (&corner)[4], uint32_t inside, const Between& between,
-                  Vector<Face>& out) {
+  static uint32_t* cut(const uint32_t (&corner)[4], uint32_t inside, const Between& between,
+                       uint32_t* out) {
     uint32_t mask = 0;
     for (uint32_t k = 0; k < 4; ++k) mask |= (inside >> corner[k] & 1) << k;
-    if (mask == 0 || mask == 15) return;
+    if (mask == 0 || mask == 15) return out;
+    const auto add = [&out](uint32_t a, uint32_t b, uint32_t c) {
+      out[0] = a, out[1] = b, out[2] = c;
+      out += 3;
+    };
     const auto on = [&](uint32_t j, uint32_t k) { return between(corner[j], corner[k]); };
     for (uint32_t k = 0; k < 4; ++k) {
       const auto& [a, b, c, d] = kOneFirst[k];
-      if (mask == 1U << a) out.push_back({on(a, b), on(a, c), on(a, d)});
-      if (mask == (15U ^ 1U << a)) out.push_back({on(a, b), on(a, d), on(a, c)});
+      if (mask == 1U << a) add(on(a, b), on(a, c), on(a, d));
+      if (mask == (15U ^ 1U << a)) add(on(a, b), on(a, d), on(a, c));
     }
     // Even permutations with each pair first.
     constexpr uint32_t kTwoFirst[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
@@ -360,62 +359,19 @@ class Builder {
     for (const auto& [a, b, c, d] : kTwoFirst) {
       if (mask != (1U << a | 1U << b)) continue;
       const uint32_t quad[4] = {on(a, c), on(a, d), on(b, d), on(b, c)};
-      out.push_back({quad[0], quad[1], quad[2]});
-      out.push_back({quad[0], quad[2], quad[3]});
+      add(quad[0], quad[1], quad[2]);
+      add(quad[0], quad[2], quad[3]);
     }
-  }
-
-  // Faces of components that enclose fewer than `least` points, and of parts of which no such
-  // number is joined by faces, but for those that enclose most.
-  void leave_out(int64_t least) {
-    DisjointSets sets(vertex_count());
-    for (const auto& part : faces_) {
-      for (const Face& f : part) {
-        sets.join(f[0], f[1]);
-        sets.join(f[0], f[2]);
-      }
-    }
-    Vector<int64_t> enclosed(vertex_count(), 0);  // by what stands for the component
-    for (uint32_t v = 0; v < vertex_count(); ++v) enclosed[sets.find(v)] += points_[v];
-    // Of a cavity it is negative.
-    const auto by_size = [](int64_t a, int64_t b) { return std::abs(a) < std::abs(b); };
-    const int64_t most = std::abs(*std::max_element(enclosed.begin(), enclosed.end(), by_size));
-    least = std::min(least, most);
-    const auto is_large = [&](uint32_t v) { return std::abs(enclosed[sets.find(v)]) >= least; };
-    // The walls of cavities hang together with the surface around them: a row that enters the
-    // object at one of them leaves it at another.
-    DisjointSets solids = sets;
-    uint32_t entered = 0;
-    for (uint32_t v = 0; v < vertex_count(); ++v) {
-      if (points_[v] < 0) entered = v;
-      if (points_[v] > 0) solids.join(entered, v);
-    }
-    Vector<uint8_t> joined(vertex_count(), 0);  // by what stands for the solid
-    for (uint32_t v = 0; v < vertex_count(); ++v) {
-      uint8_t& of_solid = joined[solids.find(v)];
-      if (of_solid != 0 || !is_large(v)) continue;
-      of_solid = enclosed[sets.find(v)] == most ||
-                 is_joined(lattice_.inside_of(&xyz_[3 * size_t{v}]), static_cast<size_t>(least),
-                           [&](const Voxel& voxel) { return lattice_.has(voxel); });
-    }
-    for (auto& part : faces_) {
-      const auto is_small = [&](const Face& f) {
-        return !is_large(f[0]) || joined[solids.find(f[0])] == 0;
-      };
-      part.erase(std::remove_if(part.begin(), part.end(), is_small), part.end());
-    }
+    return out;
   }
 
   Lattice lattice_;
   const Executor& executor_;
   size_t layers_;
-  Vector<size_t> first_id_;  // per slice
-  Vector<float> xyz_;
+  Vector<size_t> first_id_, first_face_;  // per slice
+  Crossings all_;
   Vector<uint64_t>* voxel_ = nullptr;
-  // Of vertices on edges along x: the points up to there in its row, less where the surface enters
-  // the object. The sum over a component is how many points it encloses. Empty: not asked for.
-  Vector<int32_t> points_;
-  Vector<Vector<Face>> faces_;
+  Buffer<int32_t> points_;  // as leave_out_small_parts() takes them; empty: not asked for
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "engine/mesh/mesh.h"
+#include "pyramid/buffer.h"
 #include "pyramid/executor.h"
 #include "pyramid/image_object.h"
 #include "pyramid/memory.h"
@@ -51,8 +52,8 @@ Status iso_surface(const ImageObject& object, const LatticeValues& values, const
 
 // That surface, without what makes it a mesh of the engine's.
 struct Crossings {
-  Vector<float> xyz;     // three per vertex, in mesh space
-  Vector<uint32_t> abc;  // three per face
+  Buffer<float> xyz;     // three per vertex, in mesh space
+  Buffer<uint32_t> abc;  // three per face
 };
 
 // Components that enclose fewer than `least` voxels - parts of the object with all that is in them,
