@@ -109,20 +109,27 @@ void Mesh::start_vertex(uint32_t v) {
   reset_bytes(v, VertexBytes::Reset::kCreated);
 }
 
-uint32_t Mesh::create_many(uint32_t count, uint32_t valence, const Executor& executor) {
+uint32_t Mesh::create_many(uint32_t count, const std::function<uint32_t(uint32_t)>& valence,
+                           const Executor& executor) {
   constexpr size_t kBlock = 4096;
-  assert(free_.empty() && valence >= 3 && valence <= kRingSlots);
+  assert(free_.empty());
   const uint32_t first = slots_;
   grow(uint64_t{slots_} + count);
   run_blocks(executor, count, kBlock, [&](size_t, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const auto v = static_cast<uint32_t>(first + i);
-      start_vertex(v);
-      valence_[v] = static_cast<uint16_t>(valence);
+    for (auto i = static_cast<uint32_t>(begin); i < end; ++i) {
+      const uint32_t d = valence(i);
+      start_vertex(first + i);
+      valence_[first + i] = static_cast<uint16_t>(d <= kRingSlots ? d : 0);
     }
   });
   created_ += count;
   alive_ += count;
+  // Tails share an arena.
+  for (uint32_t i = 0; i < count; ++i) {
+    if (valence_[first + i] != 0) continue;
+    --alive_;
+    set_valence(first + i, valence(i));
+  }
   return first;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cstdint>
+#include <functional>
 #include <new>
 
 #include "engine/base/constants.h"
@@ -168,9 +169,10 @@ class Mesh {
   // ring is still empty, it counts as alive from set_ring on, and it is due for a check.
   uint32_t create(Vec3 p, Vec3 velocity);
   // New ids that follow one another, at the origin, at rest and due for a check. They are alive at
-  // once: each gets its ring, of this valence, by exchange_ring(). 3 <= valence <= kRingSlots. Only
-  // where no vertex has been deleted. Throws TooManyVertices.
-  uint32_t create_many(uint32_t count, uint32_t valence, const Executor& executor);
+  // once: each gets its ring by exchange_ring(), that of first + i with valence(i) >= 3 neighbours.
+  // Only where no vertex has been deleted. Throws TooManyVertices.
+  uint32_t create_many(uint32_t count, const std::function<uint32_t(uint32_t i)>& valence,
+                       const Executor& executor);
   void destroy(uint32_t v);
   void set_ring(uint32_t v, const Neighbors& ring);
   // As many neighbours as v has. Distinct vertices may be written concurrently.

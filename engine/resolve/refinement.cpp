@@ -110,7 +110,8 @@ FaceVertices create_face_vertices(Mesh& mesh, uint32_t old_slots, const Executor
   }
   for (uint32_t& first : block_first) count += std::exchange(first, count);
   faces.of_slot.resize(slots);
-  const uint32_t first_created = mesh.create_many(count, 6, executor);
+  const uint32_t first_created = mesh.create_many(
+      count, [](uint32_t) { return 6U; }, executor);
   run_blocks(executor, old_slots, kVertices, [&](size_t block, size_t begin, size_t end) {
     uint32_t c = first_created + block_first[block];
     const auto set = [&](uint32_t x, uint32_t k) { faces.of_slot[faces.first[x] + k] = c; };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "engine/base/blocks.h"
 
@@ -13,29 +14,29 @@ constexpr size_t kBlock = 8192;
 
 }  // namespace
 
-HalfEdges::HalfEdges(const MeshArraysOf<float>& mesh, const Executor& executor)
-    : corner_(mesh.abc, mesh.abc + 3 * mesh.face_count),
-      twin_(corner_.size()),
-      out_(mesh.vertex_count) {
-  // Those that leave a vertex lie in `leaving` from begin[v] on.
-  Buffer<uint32_t> begin(mesh.vertex_count + 1), leaving(corner_.size()), filled(mesh.vertex_count);
-  for (const uint32_t v : corner_) ++begin[v + size_t{1}];
-  for (size_t v = 0; v < mesh.vertex_count; ++v) begin[v + 1] += begin[v];
-  for (uint32_t h = 0; h < corner_.size(); ++h) {
-    const uint32_t v = corner_[h];
-    leaving[begin[v] + filled[v]++] = h;
+HalfEdges::HalfEdges(const MeshArraysOf<float>& mesh, const Executor& executor) {
+  const size_t half_edges = 3 * mesh.face_count;
+  // Those that leave a vertex: that with the lowest number in out_, then each in the place of the
+  // one before.
+  Buffer<uint32_t> following;
+  for (Buffer<uint32_t>* b : {&corner_, &twin_, &following}) b->resize_uninitialized(half_edges);
+  out_.resize_uninitialized(mesh.vertex_count);
+  run_blocks(executor, half_edges, kBlock, [&](size_t, size_t begin, size_t end) {
+    std::copy(mesh.abc + begin, mesh.abc + end, corner_.begin() + begin);
+  });
+  std::fill(out_.begin(), out_.end(), kNone);
+  for (auto h = static_cast<uint32_t>(half_edges); h-- > 0;) {
+    following[h] = std::exchange(out_[corner_[h]], h);
   }
   run_blocks(executor, mesh.vertex_count, kBlock, [&](size_t, size_t first, size_t last) {
-    for (size_t v = first; v < last; ++v) {
-      assert(begin[v] != begin[v + 1]);
-      out_[v] = leaving[begin[v]];
-      for (uint32_t i = begin[v]; i < begin[v + 1]; ++i) {
-        const uint32_t h = leaving[i], w = to(h);
+    for (auto v = static_cast<uint32_t>(first); v < last; ++v) {
+      assert(out_[v] != kNone);
+      for (uint32_t h = out_[v]; h != kNone; h = following[h]) {
+        const uint32_t w = to(h);
         if (w < v) continue;  // found from there
-        const uint32_t* back = std::find_if(&leaving[begin[w]], leaving.data() + begin[w + 1],
-                                            [&](uint32_t g) { return to(g) == v; });
-        assert(back != leaving.data() + begin[w + 1]);
-        join(h, *back);
+        uint32_t back = out_[w];
+        while (to(back) != v) back = following[back];
+        join(h, back);
       }
     }
   });

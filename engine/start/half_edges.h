@@ -8,7 +8,6 @@
 #include "engine/base/mesh_arrays.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
-#include "pyramid/memory.h"
 
 namespace plc {
 
@@ -72,7 +71,7 @@ class HalfEdges {
   }
   void remove_face(uint32_t h);
 
-  Vector<uint32_t> corner_, twin_, out_;
+  Buffer<uint32_t> corner_, twin_, out_;
 };
 
 }  // namespace plc

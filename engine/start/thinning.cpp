@@ -18,6 +18,7 @@
 #include "engine/resolve/refinement.h"
 #include "engine/start/half_edges.h"
 #include "engine/transform/edge.h"
+#include "pyramid/buffer.h"
 #include "pyramid/memory.h"
 
 namespace plc {
@@ -42,32 +43,43 @@ struct Place {
   float size;
 };
 
+// What a surface lies in.
+struct Bounds {
+  Vec3 low, high;
+};
+Bounds bounds_of(const Buffer<Place>& places) {
+  Bounds b{places[0].at, places[0].at};
+  for (const Place& place : places) {
+    const Vec3 p = place.at;
+    b.low = {std::min(b.low.x, p.x), std::min(b.low.y, p.y), std::min(b.low.z, p.z)};
+    b.high = {std::max(b.high.x, p.x), std::max(b.high.y, p.y), std::max(b.high.z, p.z)};
+  }
+  return b;
+}
+
 // The vertices of a surface that are still there by the blocks of a grid in which they lie.
 class Grid {
  public:
-  Grid(const Vector<Place>& places, const HalfEdges& surface, float side, float shift)
-      : block_(places.size()) {
-    std::array<float, 3> low{}, high{};
-    for (size_t v = 0; v < places.size(); ++v) {
-      const float xyz[3] = {places[v].at.x, places[v].at.y, places[v].at.z};
-      for (size_t a = 0; a < 3; ++a) {
-        low[a] = v == 0 ? xyz[a] : std::min(low[a], xyz[a]);
-        high[a] = v == 0 ? xyz[a] : std::max(high[a], xyz[a]);
-      }
-    }
-    const auto along = [&](size_t a, float x) {
-      return static_cast<uint32_t>((x - low[a]) / side + shift);
+  Grid(const Buffer<Place>& places, const HalfEdges& surface, const Bounds& bounds, float side,
+       float shift, const Executor& executor) {
+    const auto along = [side, shift](float x, float low) {
+      return static_cast<uint32_t>((x - low) / side + shift);
     };
-    const uint32_t columns = along(0, high[0]) + 1, rows = along(1, high[1]) + 1;
-    begin_.assign(size_t{columns} * rows * (along(2, high[2]) + 1) + 1, 0);
+    const Vec3 low = bounds.low, high = bounds.high;
+    const uint32_t columns = along(high.x, low.x) + 1, rows = along(high.y, low.y) + 1;
+    block_.resize_uninitialized(places.size());
+    run_blocks(executor, places.size(), kVertices, [&](size_t, size_t begin, size_t end) {
+      for (size_t v = begin; v < end; ++v) {
+        const Vec3 p = places[v].at;
+        block_[v] = (along(p.z, low.z) * rows + along(p.y, low.y)) * columns + along(p.x, low.x);
+      }
+    });
+    begin_.assign(size_t{columns} * rows * (along(high.z, low.z) + 1) + 1, 0);
     for (uint32_t v = 0; v < block_.size(); ++v) {
-      if (!surface.alive(v)) continue;
-      const Vec3 p = places[v].at;
-      block_[v] = (along(2, p.z) * rows + along(1, p.y)) * columns + along(0, p.x);
-      ++begin_[block_[v] + size_t{1}];
+      if (surface.alive(v)) ++begin_[block_[v] + size_t{1}];
     }
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    ids_.resize(begin_.back());
+    ids_.resize_uninitialized(begin_.back());
     Vector<size_t> end = begin_;
     for (uint32_t v = 0; v < block_.size(); ++v) {
       if (surface.alive(v)) ids_[end[block_[v]]++] = v;
@@ -80,16 +92,16 @@ class Grid {
   }
 
  private:
-  Vector<uint32_t> block_;  // of each vertex that is there
+  Buffer<uint32_t> block_;  // of each vertex
   Vector<size_t> begin_;    // of each block, in ids_
-  Vector<uint32_t> ids_;    // ascending in each block
+  Buffer<uint32_t> ids_;    // ascending in each block
 };
 
 // Merges vertices, in stages.
 class Thinning {
  public:
   // steps: of each vertex, how many it takes part in.
-  Thinning(const MeshArraysOf<float>& surface, const Vector<Place>& places, Vector<uint8_t>& steps,
+  Thinning(const MeshArraysOf<float>& surface, const Buffer<Place>& places, Vector<uint8_t>& steps,
            uint32_t most_neighbors, const Executor& executor)
       : places_(places),
         steps_(steps),
@@ -383,7 +395,7 @@ class Thinning {
     return t;
   }
 
-  const Vector<Place>& places_;
+  const Buffer<Place>& places_;
   const Grid* grid_ = nullptr;  // of the stage
   Vector<uint8_t>& steps_;
   uint32_t most_neighbors_;
@@ -395,7 +407,7 @@ class Thinning {
 };
 
 // Makes the mesh what is left of the surface; ids: of its vertices, what they were there.
-void fill(Mesh& mesh, const HalfEdges& left, const Vector<Place>& places, const Schedule& schedule,
+void fill(Mesh& mesh, const HalfEdges& left, const Buffer<Place>& places, const Schedule& schedule,
           Vector<uint32_t>& ids) {
   Vector<uint32_t> living;
   Vector<Vec3> points;
@@ -405,25 +417,35 @@ void fill(Mesh& mesh, const HalfEdges& left, const Vector<Place>& places, const 
     points.push_back(places[v].at);
   }
   const Vector<uint32_t> order = morton_order(points, mesh.delta, schedule);
-  mesh.clear();
-  mesh.reserve(order.size());
   ids.resize(order.size());
-  Vector<uint32_t> new_id(left.vertex_slots());
-  for (size_t i = 0; i < ids.size(); ++i) {
+  Buffer<uint32_t> new_id;
+  new_id.resize_uninitialized(left.vertex_slots());
+  for (uint32_t i = 0; i < ids.size(); ++i) {
     ids[i] = living[order[i]];
-    new_id[ids[i]] = mesh.create(points[order[i]], {});
+    new_id[ids[i]] = i;
   }
-  Neighbors ring;
-  for (const uint32_t v : ids) {
-    ring.resize(0);
-    left.visit_ring(v, [&](uint32_t h) { ring.push_back(new_id[left.to(h)]); });
-    mesh.set_ring(new_id[v], ring);
-  }
+  const auto valence = [&](uint32_t i) {
+    uint32_t count = 0;
+    left.visit_ring(ids[i], [&](uint32_t) { ++count; });
+    return count;
+  };
+  mesh.clear();
+  mesh.create_many(static_cast<uint32_t>(ids.size()), valence, schedule);
+  run_blocks(schedule, ids.size(), kVertices, [&](size_t, size_t begin, size_t end) {
+    Neighbors ring;
+    for (auto i = static_cast<uint32_t>(begin); i < end; ++i) {
+      ring.resize(0);
+      left.visit_ring(ids[i], [&](uint32_t h) { ring.push_back(new_id[left.to(h)]); });
+      mesh.exchange_ring(i, ring);
+      mesh.place(i, places[ids[i]].at);
+    }
+  });
 }
 
-Vector<Place> places_of(const MeshArraysOf<float>& surface, const Mesh& mesh,
+Buffer<Place> places_of(const MeshArraysOf<float>& surface, const Mesh& mesh,
                         const Executor& executor) {
-  Vector<Place> places(surface.vertex_count);
+  Buffer<Place> places;
+  places.resize_uninitialized(surface.vertex_count);
   run_blocks(executor, places.size(), kVertices, [&](size_t, size_t begin, size_t end) {
     for (size_t v = begin; v < end; ++v) {
       const float* p = surface.point(v);
@@ -439,12 +461,13 @@ Vector<Place> places_of(const MeshArraysOf<float>& surface, const Mesh& mesh,
 Status thin_out(const MeshArraysOf<float>& surface, const Schedule& schedule, const GoOn& go_on,
                 Mesh& mesh) {
   Vector<uint8_t> steps(surface.vertex_count, kSteps);
-  const Vector<Place> places = places_of(surface, mesh, schedule);
+  const Buffer<Place> places = places_of(surface, mesh, schedule);
+  const Bounds bounds = bounds_of(places);
   for (int i = 0;; ++i) {
     Thinning thinning(surface, places, steps, mesh.most_neighbors, schedule);
     const float side = kSide * static_cast<float>(mesh.delta);
     for (const float shift : kShifts) {
-      thinning.run(Grid(places, thinning.mesh(), side, shift));
+      thinning.run(Grid(places, thinning.mesh(), bounds, side, shift, schedule));
       if (Status s = ask(go_on); !s.ok()) return s;
     }
     Vector<uint32_t> ids;
@@ -461,7 +484,6 @@ Status thin_out(const MeshArraysOf<float>& surface, const Schedule& schedule, co
       if (meets[thinning.left_of(v)] != 0 && steps[v] > 0) --steps[v];
     }
   }
-  for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.resize(v);
   return {};
 }
 

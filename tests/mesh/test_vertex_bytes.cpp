@@ -66,7 +66,8 @@ TEST_CASE("there are bytes for all vertices that are created at once, and for th
           "[vertex_bytes]") {
   Mesh mesh;
   const VertexBytes bytes(mesh, 7, Reset::kTouched);
-  mesh.create_many(1000, 6, fixtures::ThreadExecutor(3));
+  mesh.create_many(
+      1000, [](uint32_t) { return 6U; }, fixtures::ThreadExecutor(3));
   REQUIRE(bytes.all().size() == mesh.padded());
   CHECK(std::accumulate(bytes.all().begin(), bytes.all().end(), 0) == 7000);
 }
