@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kernels/image_value.h"
+#include "kernels/weighted_rows.h"
 #include "pyramid/memory.h"
 
 namespace plc {
@@ -49,29 +50,30 @@ void visit_rows(const Inner& inner, const Visit& visit) {
   }
 }
 
+// Of those voxels, and of some beside them, along the axis of that stride. Those around them are
+// read as far as the taps reach.
 template <size_t kTaps>
-void convolve(const Vector<float>& from, size_t stride, const std::array<float, kTaps>& taps,
-              const Inner& inner, Vector<float>& to) {
-  visit_rows(inner, [&](size_t first, size_t count) {
-    const float* const in = from.data() + first - kTaps / 2 * stride;
-    float* const out = to.data() + first;
-    for (size_t i = 0; i < count; ++i) {
-      float sum = 0;
-      for (size_t k = 0; k < kTaps; ++k) sum += taps[k] * in[i + k * stride];
-      out[i] = sum;
-    }
-  });
+void convolve(SimdTarget simd, const Vector<float>& from, size_t stride,
+              const std::array<float, kTaps>& taps, const Inner& inner, Vector<float>& to) {
+  const size_t begin = inner.y * kRow + inner.x;
+  for (size_t z = inner.z; z < kSide - inner.z; ++z) {
+    const size_t first = z * kPlane + begin;  // to the last one of the plane, mirrored
+    std::array<const float*, kTaps> rows;
+    for (size_t k = 0; k < kTaps; ++k) rows[k] = &from[first + k * stride - kTaps / 2 * stride];
+    kernels::weighted_rows(simd, taps.data(), kTaps, rows.data(), 0, kPlane - 2 * begin,
+                           to.data() + first);
+  }
 }
 
 // Of the voxels `inner` from the border, by those that the taps reach from there; others are of no
 // use afterwards.
 template <size_t kTaps>
-void smooth(Vector<float>& values, const std::array<float, kTaps>& taps, size_t inner,
-            Vector<float>& scratch) {
+void smooth(SimdTarget simd, Vector<float>& values, const std::array<float, kTaps>& taps,
+            size_t inner, Vector<float>& scratch) {
   const size_t outer = inner - kTaps / 2;
-  convolve(values, 1, taps, {inner, outer, outer}, scratch);
-  convolve(scratch, kRow, taps, {inner, inner, outer}, values);
-  convolve(values, kPlane, taps, {inner, inner, inner}, scratch);
+  convolve(simd, values, 1, taps, {inner, outer, outer}, scratch);
+  convolve(simd, scratch, kRow, taps, {inner, inner, outer}, values);
+  convolve(simd, values, kPlane, taps, {inner, inner, inner}, scratch);
   values.swap(scratch);
 }
 
@@ -99,7 +101,7 @@ struct Tensor {
 
 class Tile {
  public:
-  Tile() {
+  explicit Tile(SimdTarget simd) : simd_(simd) {
     for (auto* v : {&value_, &scratch_, &weight_}) v->resize(kVolume);
     for (auto& t : tensor_) t.resize(kVolume);
   }
@@ -146,9 +148,9 @@ class Tile {
   // Of a voxel of the image, in the values' unit, before find_tensors(); 0 where more than half of
   // them are even.
   double noise() {
-    convolve(value_, 1, kSecond, {1, 0, 0}, tensor_[0]);
-    convolve(tensor_[0], kRow, kSecond, {1, 1, 0}, scratch_);
-    convolve(scratch_, kPlane, kSecond, {1, 1, 1}, tensor_[0]);
+    convolve(simd_, value_, 1, kSecond, {1, 0, 0}, tensor_[0]);
+    convolve(simd_, tensor_[0], kRow, kSecond, {1, 1, 0}, scratch_);
+    convolve(simd_, scratch_, kPlane, kSecond, {1, 1, 1}, tensor_[0]);
     magnitudes_.clear();
     // What is padding, or repeated beyond the image's border, has no noise.
     const auto& [xs, ys, zs] = measured_;
@@ -173,7 +175,7 @@ class Tile {
   void find_tensors(const std::array<float, 3>& half, float iso) {
     constexpr size_t kTensors = kHalo - kWide.size() / 2, kValues = kTensors - 1;
     for (float& v : value_) v = std::clamp(v, 0.0F, 1.0F);
-    smooth(value_, kNarrow, kValues, scratch_);
+    smooth(simd_, value_, kNarrow, kValues, scratch_);
     visit_rows({kTensors, kTensors, kTensors}, [&](size_t first, size_t count) {
       const float* const v = value_.data() + first;
       float* to[6];
@@ -198,8 +200,8 @@ class Tile {
         weights[i] = weight;
       }
     });
-    for (auto& t : tensor_) smooth(t, kWide, kHalo, scratch_);
-    smooth(weight_, kWide, kHalo, scratch_);
+    for (auto& t : tensor_) smooth(simd_, t, kWide, kHalo, scratch_);
+    smooth(simd_, weight_, kWide, kHalo, scratch_);
   }
 
   // Over the voxels of a cell.
@@ -217,6 +219,7 @@ class Tile {
   }
 
  private:
+  SimdTarget simd_;
   std::array<std::pair<int32_t, int32_t>, 3> measured_{};  // begin and end of what is no padding
   Vector<float> value_, scratch_, magnitudes_;
   std::array<Vector<float>, 6> tensor_;
@@ -254,7 +257,7 @@ class SizeField::Builder {
     std::fill(field_.sizes_.begin(), field_.sizes_.end(), coarsest_);
     Vector<Vector<float>> noises(static_cast<size_t>(tiles_[2]));
     executor.run(noises.size(), [&](size_t z) {
-      Tile tile;
+      Tile tile(executor.simd());
       for (int32_t y = 0; y < tiles_[1]; ++y) {
         for (int32_t x = 0; x < tiles_[0]; ++x) {
           const std::array<int32_t, 3> cell{x * kTile, y * kTile, static_cast<int32_t>(z) * kTile};

@@ -48,9 +48,10 @@ void write_positions(const plc_surface& surface, const Affine& a, Real* xyz) {
   }
 }
 
-void write_faces(const plc_surface& surface, plc_space space, uint32_t* abc) {
+void write_faces(const plc_surface& surface, plc_space space, const Executor& executor,
+                 uint32_t* abc) {
   const bool mirrored = affine_of(surface, space).mirrors();
-  const Vector<uint32_t> faces = surface.mesh.faces();
+  const Vector<uint32_t> faces = surface.mesh.faces(executor);
   for (size_t i = 0; i < faces.size(); i += 3) {
     *abc++ = faces[i];
     *abc++ = faces[mirrored ? i + 2 : i + 1];
@@ -139,7 +140,7 @@ struct PlainMesh {
 
   MeshArrays arrays() const { return {xyz.data(), vertices, abc.data(), faces}; }
 };
-PlainMesh plain_mesh(const plc_surface& surface, plc_space space) {
+PlainMesh plain_mesh(const plc_surface& surface, plc_space space, const Executor& executor) {
   PlainMesh mesh;
   mesh.vertices = static_cast<size_t>(plc_surface_vertex_count(&surface));
   mesh.faces = static_cast<size_t>(plc_surface_face_count(&surface));
@@ -148,13 +149,13 @@ PlainMesh plain_mesh(const plc_surface& surface, plc_space space) {
   mesh.xyz.resize_uninitialized(3 * mesh.vertices);
   write_positions(surface, in_space, mesh.xyz.data());
   mesh.abc.resize_uninitialized(3 * mesh.faces);
-  write_faces(surface, space, mesh.abc.data());
+  write_faces(surface, space, executor, mesh.abc.data());
   return mesh;
 }
 
 void write_curvature(const plc_surface& surface, plc_space space, plc_scalar scalar,
                      const Executor& executor, float* values) {
-  const PlainMesh mesh = plain_mesh(surface, space);
+  const PlainMesh mesh = plain_mesh(surface, space, executor);
   Buffer<double> wanted(mesh.vertices);
   double* mean = scalar == PLC_SCALAR_MEAN_CURVATURE ? wanted.data() : nullptr;
   double* gaussian = scalar == PLC_SCALAR_GAUSSIAN_CURVATURE ? wanted.data() : nullptr;
@@ -305,7 +306,7 @@ plc_status plc_surface_faces(plc_context* context, const plc_surface* surface, p
     if (Status s = plc::check_surface(surface, space); !s.ok()) return s;
     const int64_t faces = plc_surface_face_count(surface);
     if (Status s = plc::check_room("abc", abc, capacity, faces); !s.ok()) return s;
-    plc::write_faces(*surface, space, abc);
+    plc::write_faces(*surface, space, context->host->schedule, abc);
     return {};
   });
 }
@@ -342,7 +343,7 @@ plc_status plc_surface_measure(plc_context* context, const plc_surface* surface,
   return plc::guarded(context, [&]() -> Status {
     if (Status s = plc::check_surface(surface, space); !s.ok()) return s;
     if (Status s = plc::check_output(measures, "measures"); !s.ok()) return s;
-    const plc::PlainMesh mesh = plc::plain_mesh(*surface, space);
+    const plc::PlainMesh mesh = plc::plain_mesh(*surface, space, context->host->schedule);
     plc::give_struct(plc::record_of(plc::surface_measures(mesh.arrays(), context->host->schedule)),
                      measures);
     return {};
@@ -353,7 +354,7 @@ plc_status plc_surface_check(plc_context* context, const plc_surface* surface, p
   return plc::guarded(context, [&]() -> Status {
     if (Status s = plc::check_surface(surface, PLC_SPACE_LPS); !s.ok()) return s;
     if (Status s = plc::check_output(check, "check"); !s.ok()) return s;
-    const plc::PlainMesh mesh = plc::plain_mesh(*surface, PLC_SPACE_LPS);
+    const plc::PlainMesh mesh = plc::plain_mesh(*surface, PLC_SPACE_LPS, context->host->schedule);
     plc::MeshCheck found;
     Status s = plc::check_mesh(mesh.arrays(), context->host->schedule, found);
     if (s.ok()) plc::give_struct(plc::record_of(found), check);

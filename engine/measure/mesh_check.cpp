@@ -169,7 +169,8 @@ Status check_mesh(const MeshArrays& mesh, const Executor& executor, MeshCheck& c
 
   MeshCheck c;
   const EdgeTable edges(mesh.abc, mesh.face_count, mesh.vertex_count, executor);
-  const MeshTopology topology = mesh_topology(mesh.abc, mesh.face_count, mesh.vertex_count, edges);
+  const MeshTopology topology =
+      mesh_topology(mesh.abc, mesh.face_count, mesh.vertex_count, edges, executor);
   note_topology(topology, c);
   const auto components = component_measures(mesh, topology, executor);
   c.measures = total_measures(mesh.vertex_count, topology, components);

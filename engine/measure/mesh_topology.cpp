@@ -6,6 +6,7 @@
 
 #include "engine/base/blocks.h"
 #include "engine/base/disjoint_sets.h"
+#include "engine/base/marks.h"
 #include "engine/measure/vertex_corners.h"
 #include "pyramid/memory.h"
 
@@ -106,19 +107,21 @@ EdgeTable::EdgeTable(const uint32_t* abc, size_t face_count, size_t vertex_count
 }
 
 MeshTopology mesh_topology(const uint32_t* abc, size_t face_count, size_t vertex_count,
-                           const EdgeTable& edges) {
+                           const EdgeTable& edges, const Executor& executor) {
   MeshTopology m;
   DisjointSets faces(face_count), corners(3 * face_count);
   Vector<uint32_t> valence(vertex_count, 0);
-  edges.visit(0, vertex_count,
-              [&](uint32_t low, uint32_t high, const EdgeUse* use, const EdgeUse* end) {
-                ++valence[low];
-                ++valence[high];
-                for (const EdgeUse* u = use + 1; u != end; ++u) {
-                  faces.join(use->corner / 3, u->corner / 3);
-                }
-                if (end - use == 2) join_umbrellas(abc, use[0].corner, use[1].corner, corners);
-              });
+  run_blocks(executor, vertex_count, kVertexBlock, [&](size_t, size_t first, size_t last) {
+    edges.visit(first, last,
+                [&](uint32_t low, uint32_t high, const EdgeUse* use, const EdgeUse* end) {
+                  add_to_mark(valence[low], 1);
+                  add_to_mark(valence[high], 1);
+                  for (const EdgeUse* u = use + 1; u != end; ++u) {
+                    faces.join(use->corner / 3, u->corner / 3);
+                  }
+                  if (end - use == 2) join_umbrellas(abc, use[0].corner, use[1].corner, corners);
+                });
+  });
   number_components(face_count, faces, m);
   edges.visit(0, vertex_count, [&](uint32_t low, uint32_t, const EdgeUse* use, const EdgeUse* end) {
     ComponentTopology& component = m.components[m.component[use->corner / 3]];
@@ -145,7 +148,7 @@ MeshTopology mesh_topology(const uint32_t* abc, size_t face_count, size_t vertex
 MeshTopology mesh_topology(const uint32_t* abc, size_t face_count, size_t vertex_count,
                            const Executor& executor) {
   return mesh_topology(abc, face_count, vertex_count,
-                       EdgeTable(abc, face_count, vertex_count, executor));
+                       EdgeTable(abc, face_count, vertex_count, executor), executor);
 }
 
 }  // namespace plc

@@ -72,7 +72,7 @@ struct MeshTopology {
 // Three indices per face, each below vertex_count; at most kMaxFaces faces.
 inline constexpr int64_t kMaxFaces = 1431655764;
 MeshTopology mesh_topology(const uint32_t* abc, size_t face_count, size_t vertex_count,
-                           const EdgeTable& edges);
+                           const EdgeTable& edges, const Executor& executor);
 // The same where the table of edges is wanted for nothing else.
 MeshTopology mesh_topology(const uint32_t* abc, size_t face_count, size_t vertex_count,
                            const Executor& executor);

@@ -361,19 +361,23 @@ void Mesh::carry_rings(const Vector<uint32_t>& order, Mesh& to, const Executor& 
   }
 }
 
-Vector<uint32_t> Mesh::faces() const {
-  Vector<uint32_t> out;
-  out.reserve(static_cast<size_t>(alive_) * 6);
-  for (uint32_t v = 0; v < slots_; ++v) {
-    const uint32_t d = valence(v);
-    for (uint32_t k = 0; k < d; ++k) {
-      const uint32_t a = neighbor(v, k);
-      const uint32_t b = neighbor(v, k + 1 == d ? 0 : k + 1);
-      if (v < a && v < b && !(is_absent(v) || is_absent(a) || is_absent(b))) {
-        out.insert(out.end(), {v, a, b});
-      }
-    }
-  }
+Vector<uint32_t> Mesh::faces(const Executor& executor) const {
+  constexpr size_t kBlock = 4096;
+  Vector<size_t> first(block_count(slots_, kBlock) + 1, 0);
+  run_blocks(executor, slots_, kBlock, [&](size_t block, size_t begin, size_t end) {
+    visit_faces(static_cast<uint32_t>(begin), static_cast<uint32_t>(end),
+                [&](uint32_t, uint32_t, uint32_t) { ++first[block + 1]; });
+  });
+  for (size_t block = 1; block < first.size(); ++block) first[block] += first[block - 1];
+  Vector<uint32_t> out(3 * first.back());
+  run_blocks(executor, slots_, kBlock, [&](size_t block, size_t begin, size_t end) {
+    uint32_t* to = out.data() + 3 * first[block];
+    visit_faces(static_cast<uint32_t>(begin), static_cast<uint32_t>(end),
+                [&](uint32_t v, uint32_t a, uint32_t b) {
+                  to[0] = v, to[1] = a, to[2] = b;
+                  to += 3;
+                });
+  });
   return out;
 }
 

@@ -199,8 +199,21 @@ class Mesh {
   // New ids: new id = rank of v in `order`, which lists every living vertex once. Nothing but the
   // ids changes.
   void renumber(const Vector<uint32_t>& order, const Executor& executor = SerialExecutor());
-  // Of the surface: triples (v, r[i], r[i+1]), v the smallest id, in order of v, then of the ring.
-  Vector<uint32_t> faces() const;
+  // visit(v, r[i], r[i + 1]) for the faces of the surface whose smallest id v is in [begin, end),
+  // in order of v, then of its ring.
+  template <typename Visit>
+  void visit_faces(uint32_t begin, uint32_t end, const Visit& visit) const {
+    for (uint32_t v = begin; v < end; ++v) {
+      if (is_absent(v)) continue;
+      const uint32_t d = valence(v);
+      for (uint32_t k = 0; k < d; ++k) {
+        const uint32_t a = neighbor(v, k), b = neighbor(v, k + 1 == d ? 0 : k + 1);
+        if (v < a && v < b && !is_absent(a) && !is_absent(b)) visit(v, a, b);
+      }
+    }
+  }
+  // Their corners, of all faces.
+  Vector<uint32_t> faces(const Executor& executor = SerialExecutor()) const;
   uint64_t bytes() const;
   Mesh copy() const;
 

@@ -5,10 +5,12 @@
 #include <cassert>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <queue>
 #include <string>
 #include <tuple>
 
+#include "engine/base/blocks.h"
 #include "engine/base/constants.h"
 #include "engine/guard/obstacles.h"
 #include "engine/guard/self_meeting.h"
@@ -50,12 +52,15 @@ struct LongEdge {
 };
 
 // How many vertices there will be at least: no face within (2) is larger than the equilateral one.
-double vertices_needed(const Mesh& mesh) {
-  const Vector<uint32_t> abc = mesh.faces();
-  double area = 0;
-  for (size_t i = 0; i < abc.size(); i += 3) {
-    area += static_cast<double>(length(area_vector(mesh, abc[i], abc[i + 1], abc[i + 2]))) / 2;
-  }
+double vertices_needed(const Mesh& mesh, const Executor& executor) {
+  Vector<double> areas(block_count(mesh.slots(), kGrain), 0);
+  run_blocks(executor, mesh.slots(), kGrain, [&](size_t block, size_t begin, size_t end) {
+    mesh.visit_faces(static_cast<uint32_t>(begin), static_cast<uint32_t>(end),
+                     [&](uint32_t v, uint32_t a, uint32_t b) {
+                       areas[block] += static_cast<double>(length(area_vector(mesh, v, a, b))) / 2;
+                     });
+  });
+  const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
   const double edge = static_cast<double>(kMaxEdge) * mesh.delta;
   return area / (std::sqrt(3.0) / 4 * edge * edge) / 2;
 }
@@ -64,9 +69,10 @@ double vertices_needed(const Mesh& mesh) {
 using Ends = Vector<std::array<uint32_t, 2>>;
 
 // whole: of the vertices that were given; edges between two of them of which one is marked stay.
-Status divide_long_edges(Mesh& mesh, const Vector<uint8_t>& whole, Ends& ends,
-                         OperationCounts& counts) {
-  if (vertices_needed(mesh) > static_cast<double>(mesh.most_vertices)) return too_many_vertices();
+Status divide_long_edges(Mesh& mesh, const Vector<uint8_t>& whole, const Executor& executor,
+                         Ends& ends, OperationCounts& counts) {
+  if (vertices_needed(mesh, executor) > static_cast<double>(mesh.most_vertices))
+    return too_many_vertices();
   const auto stays = [&](uint32_t v) { return v < whole.size() && whole[v] != 0; };
   // An edge in the queue stays what it is until its turn: only edges taken from it go.
   std::priority_queue<LongEdge> queue;
@@ -119,7 +125,7 @@ Status divide_faces(Mesh& mesh, const Schedule& schedule, OperationCounts& count
   Vector<uint8_t> whole(given, 0);
   for (int i = 0;; ++i) {
     Ends ends;
-    if (Status s = divide_long_edges(mesh, whole, ends, counts); !s.ok()) return s;
+    if (Status s = divide_long_edges(mesh, whole, schedule, ends, counts); !s.ok()) return s;
     if (mesh.slots() == given) return {};
     // The search has boxes around vertices of successive ids. Where these lie anywhere, all boxes
     // overlap, and it would take quadratic time.

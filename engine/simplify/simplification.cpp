@@ -51,7 +51,8 @@ class Simplification {
                 options.tolerance * options.tolerance * kWorking * kWorking,
                 options.two_sided} {
     const EdgeTable edges(mesh.abc, mesh.face_count, mesh.vertex_count, executor);
-    component_ = mesh_topology(mesh.abc, mesh.face_count, mesh.vertex_count, edges).component;
+    component_ =
+        mesh_topology(mesh.abc, mesh.face_count, mesh.vertex_count, edges, executor).component;
     tree_.build(mesh_, executor);
     floats_ = std::all_of(mesh.xyz, mesh.xyz + 3 * mesh.vertex_count,
                           [](double x) { return static_cast<double>(static_cast<float>(x)) == x; });

@@ -100,7 +100,7 @@ class Search {
     for (uint32_t v = 0; v < mesh.slots(); ++v) {
       if (mesh.alive(v) && !mesh.is_absent(v)) list(vertices, z_of(v), z_of(v), v);
     }
-    const Vector<uint32_t> corners = apart > 0 ? mesh.faces() : Vector<uint32_t>();
+    const Vector<uint32_t> corners = apart > 0 ? mesh.faces(executor) : Vector<uint32_t>();
     for (size_t c = 0; c < corners.size(); c += 3) {
       const auto [low, high] =
           std::minmax({z_of(corners[c]), z_of(corners[c + 1]), z_of(corners[c + 2])});
