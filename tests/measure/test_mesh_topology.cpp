@@ -7,13 +7,15 @@
 #include <vector>
 
 #include "pyramid/memory.h"
+#include "tests/samples/kernel_fixtures.h"
 #include "tests/samples/sample_meshes.h"
 
 namespace {
 
 plc::MeshTopology topology(const plc::Vector<uint32_t>& abc, size_t vertices) {
   const plc::EdgeTable edges(abc.data(), abc.size() / 3, vertices, plc::SerialExecutor());
-  return plc::mesh_topology(abc.data(), abc.size() / 3, vertices, edges);
+  return plc::mesh_topology(abc.data(), abc.size() / 3, vertices, edges,
+                            fixtures::ThreadExecutor(3));
 }
 
 }  // namespace
