@@ -288,3 +288,36 @@ TEST_CASE("parts whose voxels hang together by edges alone are left out, with th
   fill({18, 18, 8}, {28, 28, 13}, 1);
   CHECK(components(489) == 3);
 }
+
+TEST_CASE("of many parts in a row each is left out for itself, by any number of threads",
+          "[iso_surface]") {
+  // In each cube of 12 voxels a shell of 8, around a cavity of 27 voxels or one of 8, and a speck.
+  constexpr size_t kSide = 60, kCube = 12;
+  Volume v = constant({kSide, kSide, kSide}, 0);
+  for (size_t i = 0; i < v.values.size(); ++i) {
+    const std::array<size_t, 3> at{i % kSide, i / kSide % kSide, i / kSide / kSide};
+    const size_t cavity = (at[0] / kCube + at[1] / kCube + at[2] / kCube) % 2 == 0 ? 7 : 6;
+    const auto all_within = [&](size_t low, size_t high) {
+      return std::all_of(at.begin(), at.end(),
+                         [&](size_t x) { return x % kCube >= low && x % kCube < high; });
+    };
+    const bool inside = all_within(0, 1) || (all_within(2, 10) && !all_within(4, cavity));
+    v.values[i] = inside ? 1.0F : 0.0F;
+  }
+  const plc::ImageView view = view_of(v);
+  const plc::ImageObject object{view, 0.5F, true};
+  std::vector<std::vector<uint32_t>> faces;
+  for (const int threads : {1, 3}) {
+    const plc::Schedule schedule(threads);
+    plc::Crossings crossings;
+    REQUIRE(plc::iso_crossings(object, plc::values_of(object), 27, schedule, crossings).ok());
+    const std::vector<double> xyz(crossings.xyz.begin(), crossings.xyz.end());
+    plc::MeshCheck check;
+    REQUIRE(plc::check_mesh(plc::arrays_of(xyz, crossings.abc), schedule, check).ok());
+    CHECK(check.valid == 1);
+    CHECK(check.isolated_vertices == 0);
+    CHECK(check.measures.components == 125 + 63);
+    faces.emplace_back(crossings.abc.begin(), crossings.abc.end());
+  }
+  CHECK(faces[0] == faces[1]);
+}
