@@ -27,7 +27,7 @@ namespace {
 
 // In sizes: how near to one that stays others are merged into it. The first is a part of the way:
 // it is faster, and what meets when it is thinned out further stays as fine as that.
-constexpr float kReaches[] = {0.63F, 1.05F};
+constexpr float kReaches[] = {0.63F, 1.08F};
 constexpr uint8_t kSteps = std::size(kReaches);
 // What meets stays finer, and is merged anew, so many times; then its block stays as it was, or all
 // of the surface, where what meets was merged in different blocks.
