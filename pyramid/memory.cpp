@@ -21,8 +21,9 @@ namespace {
 [[maybe_unused]] constexpr size_t kHugePage = size_t{1} << 21U;
 
 // mimalloc 2 gives what is free back to the system after this option of it, by default after 25 ms:
-// arrays that live for an iteration were then mapped anew in the next, 7 % of a run on two cores.
-// Where a host has loaded the same library, its options are the host's.
+// arrays that live for an iteration were then mapped anew in the next, 7 % of a run on two cores
+// (MIMALLOC_DECOMMIT_DELAY=25 in the environment, which comes first). Where a host has loaded the
+// same library, its options are the host's.
 [[maybe_unused]] constexpr int kDecommitDelay = 15;
 [[maybe_unused]] constexpr long kDecommitAfter = 1000;  // ms
 
@@ -52,9 +53,9 @@ struct SystemAllocator {
     const bool of_host = dlopen(kName, RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD) != nullptr;
     void* library = dlopen(kName, RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) return;
-    void* set_option = dlsym(library, "mi_option_set");
-    if (!of_host && set_option != nullptr) {
-      reinterpret_cast<void (*)(int, long)>(set_option)(kDecommitDelay, kDecommitAfter);
+    void* set_default = dlsym(library, "mi_option_set_default");
+    if (!of_host && set_default != nullptr) {
+      reinterpret_cast<void (*)(int, long)>(set_default)(kDecommitDelay, kDecommitAfter);
     }
     void* aligned = dlsym(library, "mi_malloc_aligned");
     void* free = dlsym(library, "mi_free");

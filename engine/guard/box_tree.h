@@ -21,12 +21,12 @@ namespace plc {
 // but for pairs().
 class BoxTree {
  public:
-  // face(f) of faces f < count: its box and whether it has moved. Buffers are kept from call to
-  // call. The same for any executor.
   struct Face {
     Box3 box;
     bool moved;
   };
+  // face(f): the Face of each f < count. Buffers are kept from call to call. The same for any
+  // executor.
   template <typename OfFace>
   void build(size_t count, const Executor& executor, const OfFace& face);
 

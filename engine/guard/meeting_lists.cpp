@@ -1,4 +1,4 @@
-// The listed faces of a search for meetings.
+// The listed faces of a search for meetings, and their boxes.
 #include <algorithm>
 #include <array>
 #include <span>
