@@ -51,7 +51,7 @@ int Callbacks::on_progress(const plc_progress* progress, void* user) {
   if (!context.failed() && (called || self.time_to_look())) {
     context.guarded([&] {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-      if (called) self.functions_->progress(dict_of(*progress));
+      if (called) call_python(self.functions_->progress, dict_of(*progress));
     });
   }
   return context.failed() ? kCancel : kGoOn;
@@ -68,7 +68,8 @@ plc_verdict Callbacks::on_level(const plc_level_report* report, const plc_surfac
     const auto lent = std::make_shared<LentSurface>(self.context_, surface);
     const py::object answer = [&] {
       const LentSurface::Scope scope(*lent);
-      return self.functions_->level(dict_of(*report), std::static_pointer_cast<AnySurface>(lent));
+      return call_python(self.functions_->level, dict_of(*report),
+                         std::static_pointer_cast<AnySurface>(lent));
     }();
     verdict = static_cast<plc_verdict>(answer.cast<int>());
   });
@@ -82,8 +83,8 @@ int Callbacks::on_force(const plc_force_points* points, float* forces, void* use
   const bool given = context.guarded([&] {
     // Copies, as Python code may keep them.
     const py::object answer =
-        self.functions_->force(points->level, copy_of(points->xyz, points->count),
-                               copy_of(points->normals, points->count));
+        call_python(self.functions_->force, points->level, copy_of(points->xyz, points->count),
+                    copy_of(points->normals, points->count));
     if (answer.is_none()) return;
     const auto values = answer.cast<py::array_t<float, py::array::c_style>>();
     if (values.ndim() != 2 || values.shape(0) != points->count || values.shape(1) != 3) {

@@ -67,7 +67,7 @@ std::pair<int64_t, int64_t> Context::memory() {
 }
 
 void Context::log(plc_log_level level, const char* line) {
-  guarded([&] { log_(static_cast<int>(level), line); });
+  guarded([&] { call_python(log_, static_cast<int>(level), line); });
 }
 
 // The first failure is what went wrong; what fails in its wake is not told.
@@ -101,7 +101,7 @@ Context::Use::Use(Context& context, bool nested)
 
 void Context::Use::wait() {
   while (!context_.mutex_.try_lock_for(kLookForSignals)) {
-    take_gil([this] { PyEval_RestoreThread(python_); });
+    sleeping_at_exit([this] { PyEval_RestoreThread(python_); });
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     python_ = PyEval_SaveThread();
   }
@@ -113,7 +113,7 @@ Context::Use::~Use() {
     context_.user_ = std::thread::id();
     context_.mutex_.unlock();
   }
-  take_gil([this] { PyEval_RestoreThread(python_); });
+  sleeping_at_exit([this] { PyEval_RestoreThread(python_); });
   if (!inner_) context_.settle();
 }
 

@@ -22,15 +22,32 @@ namespace py = pybind11;
 // Throws the exception of pellicle/_errors.py that stands for the status.
 [[noreturn]] void raise(plc_status status, const std::string& message);
 
-// take() takes the GIL. When Python ends, threads that ask for it are ended by unwinding, which C++
-// code above may not allow: here they sleep until the process goes, as from Python 3.14 on.
-template <class Take>
-void take_gil(Take&& take) noexcept {
-  try {
-    take();
-  } catch (...) {
+// step() takes the GIL or runs Python code. While Python ends, threads that ask for the GIL are
+// ended by unwinding, which C++ code above may not allow, and which lets go of Python objects
+// without the GIL; once it has ended, they ask for a lock that is gone. Here they sleep until the
+// process goes, as from Python 3.14 on.
+template <class Step>
+void sleeping_at_exit(Step&& step) noexcept {
+  const auto sleep = [] {
     for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+  };
+  if (Py_IsInitialized() == 0) sleep();
+  try {
+    step();
+  } catch (...) {
+    sleep();  // within: nobody may catch the end of a thread and go on
   }
+}
+
+// function(arguments...), of Python. For callbacks: nothing between the interpreter and here is
+// unwound.
+template <class... Arguments>
+py::object call_python(const py::object& function, const Arguments&... arguments) {
+  const py::tuple objects = py::make_tuple(arguments...);
+  PyObject* result = nullptr;
+  sleeping_at_exit([&] { result = PyObject_CallObject(function.ptr(), objects.ptr()); });
+  if (result == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::object>(result);
 }
 
 class Context {
@@ -72,7 +89,7 @@ class Context {
   template <class Function>
   bool guarded(Function&& function) {
     std::optional<py::gil_scoped_acquire> gil;
-    take_gil([&] { gil.emplace(); });
+    sleeping_at_exit([&] { gil.emplace(); });
     try {
       function();
       return true;

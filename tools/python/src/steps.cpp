@@ -65,7 +65,7 @@ struct BrickReader {
       low[a] = at[a] * bricks.brick[a];
       high[a] = std::min(low[a] + bricks.brick[a], bricks.dims[a]);
     }
-    const auto answer = py::cast<py::array>(read(low, high));
+    const auto answer = py::cast<py::array>(call_python(read, low, high));
     const std::array<int64_t, 3> size{high[0] - low[0], high[1] - low[1], high[2] - low[2]};
     if (answer.ndim() != 3 || answer.shape(0) != size[2] || answer.shape(1) != size[1] ||
         answer.shape(2) != size[0] || voxel_type_of(answer.dtype()) != bricks.type ||
