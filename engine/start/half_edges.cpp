@@ -14,21 +14,19 @@ constexpr size_t kBlock = 8192;
 
 }  // namespace
 
-HalfEdges::HalfEdges(const MeshArraysOf<float>& mesh, const Executor& executor) {
-  const size_t half_edges = 3 * mesh.face_count;
+HalfEdges::HalfEdges(Buffer<uint32_t>&& abc, size_t vertices, const Executor& executor)
+    : corner_(std::move(abc)) {
+  const size_t half_edges = corner_.size();
   // Those that leave a vertex: that with the lowest number in out_, then each in the place of the
   // one before.
   Buffer<uint32_t> following;
-  for (Buffer<uint32_t>* b : {&corner_, &twin_, &following}) b->resize_uninitialized(half_edges);
-  out_.resize_uninitialized(mesh.vertex_count);
-  run_blocks(executor, half_edges, kBlock, [&](size_t, size_t begin, size_t end) {
-    std::copy(mesh.abc + begin, mesh.abc + end, corner_.begin() + begin);
-  });
+  for (Buffer<uint32_t>* b : {&twin_, &following}) b->resize_uninitialized(half_edges);
+  out_.resize_uninitialized(vertices);
   std::fill(out_.begin(), out_.end(), kNone);
   for (auto h = static_cast<uint32_t>(half_edges); h-- > 0;) {
     following[h] = std::exchange(out_[corner_[h]], h);
   }
-  run_blocks(executor, mesh.vertex_count, kBlock, [&](size_t, size_t first, size_t last) {
+  run_blocks(executor, vertices, kBlock, [&](size_t, size_t first, size_t last) {
     for (auto v = static_cast<uint32_t>(first); v < last; ++v) {
       assert(out_[v] != kNone);
       for (uint32_t h = out_[v]; h != kNone; h = following[h]) {

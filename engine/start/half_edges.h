@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/base/mesh_arrays.h"
 #include "pyramid/buffer.h"
 #include "pyramid/executor.h"
 
@@ -24,8 +23,9 @@ class HalfEdges {
  public:
   static constexpr uint32_t kNone = ~0U;
 
-  // Closed, oriented, a manifold; every vertex has a face. The same for any executor.
-  HalfEdges(const MeshArraysOf<float>& mesh, const Executor& executor);
+  // Of a mesh that is closed, oriented, a manifold; every vertex has a face. abc: three indices
+  // below `vertices` per face. The same for any executor.
+  HalfEdges(Buffer<uint32_t>&& abc, size_t vertices, const Executor& executor);
 
   static uint32_t next(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
   static uint32_t previous(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/mesh_arrays.h"
 #include "engine/guard/self_meeting.h"
 #include "engine/resolve/refinement.h"
 #include "engine/start/thinning.h"
@@ -145,10 +144,11 @@ bool set_apart(const Mesh& mesh, const Schedule& schedule, const Vector<uint64_t
 Status regular_iso_surface(const ImageObject& object, const LatticeValues& values,
                            const Schedule& schedule, Mesh& mesh, int64_t least, const GoOn& go_on) {
   if (mesh.sizing != nullptr) {
-    Crossings crossings;
-    if (Status s = iso_crossings(object, values, least, schedule, crossings); !s.ok()) return s;
-    if (Status s = ask(go_on); !s.ok()) return s;
-    return thin_out(arrays_of(crossings.xyz, crossings.abc), schedule, go_on, mesh);
+    const auto make = [&](Crossings& crossings) -> Status {
+      if (Status s = iso_crossings(object, values, least, schedule, crossings); !s.ok()) return s;
+      return ask(go_on);
+    };
+    return thin_out(make, schedule, go_on, mesh);
   }
   Vector<uint64_t> voxel;
   if (Status s = iso_surface(object, values, schedule, mesh, &voxel); !s.ok()) {

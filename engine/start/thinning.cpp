@@ -57,6 +57,12 @@ Bounds bounds_of(const Buffer<Place>& places) {
   return b;
 }
 
+// What v was merged into, or itself. into: of each vertex what it was merged into first, or itself.
+uint32_t left_of(const Vector<uint32_t>& into, uint32_t v) {
+  while (into[v] != v) v = into[v];
+  return v;
+}
+
 // The vertices of a surface that are still there by the blocks of a grid in which they lie.
 class Grid {
  public:
@@ -101,13 +107,14 @@ class Grid {
 class Thinning {
  public:
   // steps: of each vertex, how many it takes part in.
-  Thinning(const MeshArraysOf<float>& surface, const Buffer<Place>& places, Vector<uint8_t>& steps,
+  // abc: of the surface's faces.
+  Thinning(Buffer<uint32_t>&& abc, const Buffer<Place>& places, Vector<uint8_t>& steps,
            uint32_t most_neighbors, const Executor& executor)
       : places_(places),
         steps_(steps),
         most_neighbors_(most_neighbors),
         executor_(executor),
-        mesh_(surface, executor),
+        mesh_(std::move(abc), places.size(), executor),
         into_(places.size()) {
     std::iota(into_.begin(), into_.end(), 0U);
   }
@@ -128,11 +135,8 @@ class Thinning {
       thin_out(static_cast<uint32_t>(block), *scratch);
     });
   }
-  // What v was merged into, or itself.
-  uint32_t left_of(uint32_t v) const {
-    while (into_[v] != v) v = into_[v];
-    return v;
-  }
+  // As left_of() takes it.
+  Vector<uint32_t> take_into() { return std::move(into_); }
   const HalfEdges& mesh() const { return mesh_; }
 
  private:
@@ -188,7 +192,8 @@ class Thinning {
       if (s.meeting.empty()) return;
       from = i < kTries ? kSteps : 0;
       for (const uint32_t v : grid_->vertices(block)) {
-        const bool meets = std::binary_search(s.meeting.begin(), s.meeting.end(), left_of(v));
+        const bool meets =
+            std::binary_search(s.meeting.begin(), s.meeting.end(), left_of(into_, v));
         if (meets && steps_[v] > 0) from = std::min(from, --steps_[v]);
         if (i >= kTries) steps_[v] = 0;
       }
@@ -442,13 +447,12 @@ void fill(Mesh& mesh, const HalfEdges& left, const Buffer<Place>& places, const 
   });
 }
 
-Buffer<Place> places_of(const MeshArraysOf<float>& surface, const Mesh& mesh,
-                        const Executor& executor) {
+Buffer<Place> places_of(const Buffer<float>& xyz, const Mesh& mesh, const Executor& executor) {
   Buffer<Place> places;
-  places.resize_uninitialized(surface.vertex_count);
+  places.resize_uninitialized(xyz.size() / 3);
   run_blocks(executor, places.size(), kVertices, [&](size_t, size_t begin, size_t end) {
     for (size_t v = begin; v < end; ++v) {
-      const float* p = surface.point(v);
+      const float* p = xyz.data() + 3 * v;
       const float above = mesh.sizing->field.above_delta(p[0], p[1], p[2]);
       places[v] = {{p[0], p[1], p[2]}, static_cast<float>(mesh.delta) * (1 + above)};
     }
@@ -456,35 +460,53 @@ Buffer<Place> places_of(const MeshArraysOf<float>& surface, const Mesh& mesh,
   return places;
 }
 
+// What became of a surface's vertices.
+struct Merged {
+  Vector<uint32_t> into;  // as left_of() takes it
+  Vector<uint32_t> ids;   // of those of the mesh: what they were
+};
+
+// Makes the mesh what is left of the surface. Of that nothing else is kept: it takes more than the
+// mesh does. steps: as of Thinning; all where it is empty.
+Status thin_out_once(const MakeCrossings& make, const Schedule& schedule, const GoOn& go_on,
+                     Mesh& mesh, Vector<uint8_t>& steps, Merged& merged) {
+  Crossings surface;
+  if (Status s = make(surface); !s.ok()) return s;
+  const Buffer<Place> places = places_of(surface.xyz, mesh, schedule);
+  surface.xyz = Buffer<float>();
+  if (steps.empty()) steps.assign(places.size(), kSteps);
+  Thinning thinning(std::move(surface.abc), places, steps, mesh.most_neighbors, schedule);
+  const Bounds bounds = bounds_of(places);
+  const float side = kSide * static_cast<float>(mesh.delta);
+  for (const float shift : kShifts) {
+    thinning.run(Grid(places, thinning.mesh(), bounds, side, shift, schedule));
+    if (Status s = ask(go_on); !s.ok()) return s;
+  }
+  fill(mesh, thinning.mesh(), places, schedule, merged.ids);
+  merged.into = thinning.take_into();
+  return {};
+}
+
 }  // namespace
 
-Status thin_out(const MeshArraysOf<float>& surface, const Schedule& schedule, const GoOn& go_on,
+Status thin_out(const MakeCrossings& make, const Schedule& schedule, const GoOn& go_on,
                 Mesh& mesh) {
-  Vector<uint8_t> steps(surface.vertex_count, kSteps);
-  const Buffer<Place> places = places_of(surface, mesh, schedule);
-  const Bounds bounds = bounds_of(places);
+  Vector<uint8_t> steps;
   for (int i = 0;; ++i) {
-    Thinning thinning(surface, places, steps, mesh.most_neighbors, schedule);
-    const float side = kSide * static_cast<float>(mesh.delta);
-    for (const float shift : kShifts) {
-      thinning.run(Grid(places, thinning.mesh(), bounds, side, shift, schedule));
-      if (Status s = ask(go_on); !s.ok()) return s;
-    }
-    Vector<uint32_t> ids;
-    fill(mesh, thinning.mesh(), places, schedule, ids);
+    Merged merged;
+    if (Status s = thin_out_once(make, schedule, go_on, mesh, steps, merged); !s.ok()) return s;
     // What meets was merged in different blocks. It stays finer, as what meets in a block.
-    Vector<uint8_t> meets(surface.vertex_count, 0);
     const auto meeting = meeting_faces(mesh, schedule);
-    if (meeting.empty()) break;
+    if (meeting.empty()) return {};
+    Vector<uint8_t> meets(steps.size(), 0);
     for (const auto& face : meeting) {
-      for (const uint32_t v : face) meets[ids[v]] = 1;
+      for (const uint32_t v : face) meets[merged.ids[v]] = 1;
     }
-    for (uint32_t v = 0; v < surface.vertex_count; ++v) {
+    for (uint32_t v = 0; v < steps.size(); ++v) {
       if (i >= kTries) steps[v] = 0;
-      if (meets[thinning.left_of(v)] != 0 && steps[v] > 0) --steps[v];
+      if (meets[left_of(merged.into, v)] != 0 && steps[v] > 0) --steps[v];
     }
   }
-  return {};
 }
 
 }  // namespace plc

@@ -1,10 +1,13 @@
 // A surface that is much finer than the sizes of an adaptive mesh, with as few vertices as those
 // ask for.
 #pragma once
+#include <functional>
+
 #include "engine/base/go_on.h"
-#include "engine/base/mesh_arrays.h"
 #include "engine/base/schedule.h"
 #include "engine/mesh/mesh.h"
+#include "engine/start/iso_surface.h"
+#include "pyramid/status.h"
 
 namespace plc {
 
@@ -18,11 +21,12 @@ namespace plc {
 // The blocks of a grid are thinned out at once, each by itself, then those of another grid, in
 // which lies within a block what was at a border; so the same bits for any executor.
 //
-// surface: closed, oriented, a manifold, embedded, in mesh space; every vertex has a face. The
-// result is embedded, too, without gaps in its ids, which lie along a Morton curve. mesh.sizing is
-// not null. Throws std::bad_alloc; kCancelled, with the mesh spoilt, where go_on, asked after every
-// grid, says so.
-Status thin_out(const MeshArraysOf<float>& surface, const Schedule& schedule, const GoOn& go_on,
-                Mesh& mesh);
+// make(surface) makes the surface, always the same: closed, oriented, a manifold, embedded, in mesh
+// space; every vertex has a face. It is not kept, and made once more where faces of different
+// blocks meet. The result is embedded, too, without gaps in its ids, which lie along a Morton
+// curve. mesh.sizing is not null. Throws std::bad_alloc; kCancelled, with the mesh spoilt, where
+// go_on, asked after every grid, says so; what make() fails with.
+using MakeCrossings = std::function<Status(Crossings& surface)>;
+Status thin_out(const MakeCrossings& make, const Schedule& schedule, const GoOn& go_on, Mesh& mesh);
 
 }  // namespace plc

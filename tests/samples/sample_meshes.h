@@ -9,9 +9,19 @@
 #include <vector>
 
 #include "engine/base/mesh_arrays.h"
+#include "pyramid/buffer.h"
 #include "pyramid/memory.h"
 
 namespace samples {
+
+// A buffer with these values.
+template <typename T, typename Values>
+plc::Buffer<T> buffer_of(const Values& values) {
+  plc::Buffer<T> buffer(values.size());
+  std::transform(values.begin(), values.end(), buffer.begin(),
+                 [](auto value) { return static_cast<T>(value); });
+  return buffer;
+}
 
 struct Soup {
   std::vector<double> xyz;

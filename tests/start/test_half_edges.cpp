@@ -15,8 +15,7 @@ using plc::HalfEdges;
 using samples::Soup;
 
 HalfEdges half_edges_of(const Soup& soup) {
-  const std::vector<float> xyz(soup.xyz.begin(), soup.xyz.end());
-  return {plc::arrays_of(xyz, soup.abc), samples::kSerial};
+  return {samples::buffer_of<uint32_t>(soup.abc), soup.xyz.size() / 3, samples::kSerial};
 }
 
 // What of the soup is left, where every corner is: broken where it is no closed manifold.
