@@ -57,39 +57,47 @@ void SpatialHash::build(const Mesh& mesh, float cell, const Executor& executor, 
     }
   }
   first[kParts] = total;
-  placed_.resize_uninitialized(total);
+  // Kernels read whole vectors.
+  for (Buffer<uint32_t>* stream : {&entries_, &places_}) {
+    stream->resize_uninitialized(size_t{total} + kRingLanes);
+    std::fill(stream->end() - kRingLanes, stream->end(), 0U);
+  }
   run_blocks(executor, n, kBlock, [&](size_t block, size_t begin, size_t end) {
     uint32_t* next = part_start_.data() + block * kParts;
     for (size_t i = begin; i < end; ++i) {
       const auto v = static_cast<uint32_t>(i);
       if (!mesh.alive(v) || mesh.is_absent(v)) continue;
       const FourInts q = quanta(load_four(position[v]));
-      const uint32_t b = bucket(q);
-      placed_[next[b >> part_shift]++] = {v, b, coarse_place(q[0], q[1], q[2])};
+      const uint32_t entry = next[bucket(q) >> part_shift]++;
+      entries_[entry] = v;
+      places_[entry] = coarse_place(q[0], q[1], q[2]);
     }
   });
   // ... then each part by buckets.
   start_.resize_uninitialized(size_t{buckets} + 1);
   start_[buckets] = total;
-  // Kernels read whole vectors.
-  for (Buffer<uint32_t>* stream : {&entries_, &places_}) {
-    stream->resize_uninitialized(size_t{total} + kRingLanes);
-    std::fill(stream->end() - kRingLanes, stream->end(), 0U);
-  }
   executor.run(kParts, [&](size_t part) {
     uint32_t* const begin = start_.data() + (part << part_shift);
     uint32_t* const end = begin + (size_t{1} << part_shift);
-    const Placed* const from = placed_.data() + first[part];
-    const Placed* const to = placed_.data() + first[part + 1];
     std::fill(begin, end, 0U);
-    for (const Placed* p = from; p != to; ++p) ++start_[p->bucket];
+    struct Placed {
+      uint32_t id, bucket;
+      CoarsePlace place;
+    };
+    Buffer<Placed> placed;
+    placed.resize_uninitialized(first[part + 1] - first[part]);
+    for (uint32_t i = 0; i < placed.size(); ++i) {
+      const uint32_t entry = first[part] + i, v = entries_[entry];
+      placed[i] = {v, bucket(quanta(load_four(position[v]))), places_[entry]};
+      ++start_[placed[i].bucket];
+    }
     uint32_t next = first[part + 1];
     for (uint32_t* s = end; s-- != begin;) *s = next -= *s;
     // Backwards from the ends would need them: the starts move up and are moved back.
-    for (const Placed* p = from; p != to; ++p) {
-      const uint32_t entry = start_[p->bucket]++;
-      entries_[entry] = p->id;
-      places_[entry] = p->place;
+    for (const Placed& p : placed) {
+      const uint32_t entry = start_[p.bucket]++;
+      entries_[entry] = p.id;
+      places_[entry] = p.place;
     }
     for (uint32_t* s = end; --s != begin;) *s = s[-1];
     *begin = first[part];

@@ -25,7 +25,7 @@ namespace plc {
 //                                      that lie outside of a box are told without looking them up
 //   late     8 bytes per insertion     what was inserted since: a list per 4 buckets
 //
-// While building another 12 bytes per vertex.
+// While building another 12 bytes per vertex of a sixteenth of the buckets, for each thread.
 class SpatialHash {
  public:
   explicit SpatialHash(SimdTarget simd = best_simd_target()) : simd_(simd) {}
@@ -115,12 +115,6 @@ class SpatialHash {
   Buffer<CoarsePlace> places_;
   Buffer<uint32_t> late_head_;
   Buffer<Late> late_;
-  // By part of the buckets, then by vertex: while building.
-  struct Placed {
-    uint32_t id, bucket;
-    CoarsePlace place;
-  };
-  Buffer<Placed> placed_;
   Buffer<uint32_t> part_start_;
   std::vector<Vector<uint32_t>> missing_;  // per task: those that insert() has to enter
 };
