@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <span>
 #include <utility>
 
 #include "engine/base/blocks.h"
@@ -17,6 +16,7 @@
 #include "engine/guard/self_meeting.h"
 #include "engine/resolve/refinement.h"
 #include "engine/start/half_edges.h"
+#include "engine/start/thinning_grid.h"
 #include "engine/transform/edge.h"
 #include "pyramid/buffer.h"
 #include "pyramid/memory.h"
@@ -38,77 +38,17 @@ constexpr float kSide = 32;
 constexpr float kShifts[] = {0, 0.5F, 0.25F};
 constexpr size_t kVertices = 4096;  // of a task
 
-struct Place {
-  Vec3 at;
-  float size;
-};
-
-// What a surface lies in.
-struct Bounds {
-  Vec3 low, high;
-};
-Bounds bounds_of(const Buffer<Place>& places) {
-  Bounds b{places[0].at, places[0].at};
-  for (const Place& place : places) {
-    const Vec3 p = place.at;
-    b.low = {std::min(b.low.x, p.x), std::min(b.low.y, p.y), std::min(b.low.z, p.z)};
-    b.high = {std::max(b.high.x, p.x), std::max(b.high.y, p.y), std::max(b.high.z, p.z)};
-  }
-  return b;
-}
-
 // What v was merged into, or itself. into: of each vertex what it was merged into first, or itself.
 uint32_t left_of(const Vector<uint32_t>& into, uint32_t v) {
   while (into[v] != v) v = into[v];
   return v;
 }
 
-// The vertices of a surface that are still there by the blocks of a grid in which they lie.
-class Grid {
- public:
-  Grid(const Buffer<Place>& places, const HalfEdges& surface, const Bounds& bounds, float side,
-       float shift, const Executor& executor) {
-    const auto along = [side, shift](float x, float low) {
-      return static_cast<uint32_t>((x - low) / side + shift);
-    };
-    const Vec3 low = bounds.low, high = bounds.high;
-    const uint32_t columns = along(high.x, low.x) + 1, rows = along(high.y, low.y) + 1;
-    block_.resize_uninitialized(places.size());
-    run_blocks(executor, places.size(), kVertices, [&](size_t, size_t begin, size_t end) {
-      for (size_t v = begin; v < end; ++v) {
-        const Vec3 p = places[v].at;
-        block_[v] = (along(p.z, low.z) * rows + along(p.y, low.y)) * columns + along(p.x, low.x);
-      }
-    });
-    begin_.assign(size_t{columns} * rows * (along(high.z, low.z) + 1) + 1, 0);
-    for (uint32_t v = 0; v < block_.size(); ++v) {
-      if (surface.alive(v)) ++begin_[block_[v] + size_t{1}];
-    }
-    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    ids_.resize_uninitialized(begin_.back());
-    Vector<size_t> end = begin_;
-    for (uint32_t v = 0; v < block_.size(); ++v) {
-      if (surface.alive(v)) ids_[end[block_[v]]++] = v;
-    }
-  }
-  size_t blocks() const { return begin_.size() - 1; }
-  uint32_t block(uint32_t v) const { return block_[v]; }
-  std::span<const uint32_t> vertices(size_t block) const {
-    return {ids_.data() + begin_[block], ids_.data() + begin_[block + 1]};
-  }
-
- private:
-  Buffer<uint32_t> block_;  // of each vertex
-  Vector<size_t> begin_;    // of each block, in ids_
-  Buffer<uint32_t> ids_;    // ascending in each block
-};
-
 // Merges vertices, in stages.
 class Thinning {
  public:
-  // steps: of each vertex, how many it takes part in.
-  // abc: of the surface's faces.
-  Thinning(Buffer<uint32_t>&& abc, const Buffer<Place>& places, Vector<uint8_t>& steps,
+  // abc: of the surface's faces. steps: of each vertex, how many it takes part in.
+  Thinning(Buffer<uint32_t>&& abc, const Buffer<SizedPlace>& places, Vector<uint8_t>& steps,
            uint32_t most_neighbors, const Executor& executor)
       : places_(places),
         steps_(steps),
@@ -121,7 +61,7 @@ class Thinning {
 
   // Those within the blocks of a grid, all blocks at once. Faces with corners in the same block do
   // not meet afterwards, if they did not before.
-  void run(const Grid& grid) {
+  void run(const ThinningGrid& grid) {
     grid_ = &grid;
     flags_.assign(places_.size(), 0);
     run_blocks(executor_, mesh_.face_slots(), kVertices, [&](size_t, size_t begin, size_t end) {
@@ -400,8 +340,8 @@ class Thinning {
     return t;
   }
 
-  const Buffer<Place>& places_;
-  const Grid* grid_ = nullptr;  // of the stage
+  const Buffer<SizedPlace>& places_;
+  const ThinningGrid* grid_ = nullptr;  // of the stage
   Vector<uint8_t>& steps_;
   uint32_t most_neighbors_;
   const Executor& executor_;
@@ -412,8 +352,8 @@ class Thinning {
 };
 
 // Makes the mesh what is left of the surface; ids: of its vertices, what they were there.
-void fill(Mesh& mesh, const HalfEdges& left, const Buffer<Place>& places, const Schedule& schedule,
-          Vector<uint32_t>& ids) {
+void fill(Mesh& mesh, const HalfEdges& left, const Buffer<SizedPlace>& places,
+          const Schedule& schedule, Vector<uint32_t>& ids) {
   Vector<uint32_t> living;
   Vector<Vec3> points;
   for (uint32_t v = 0; v < left.vertex_slots(); ++v) {
@@ -447,8 +387,8 @@ void fill(Mesh& mesh, const HalfEdges& left, const Buffer<Place>& places, const 
   });
 }
 
-Buffer<Place> places_of(const Buffer<float>& xyz, const Mesh& mesh, const Executor& executor) {
-  Buffer<Place> places;
+Buffer<SizedPlace> places_of(const Buffer<float>& xyz, const Mesh& mesh, const Executor& executor) {
+  Buffer<SizedPlace> places;
   places.resize_uninitialized(xyz.size() / 3);
   run_blocks(executor, places.size(), kVertices, [&](size_t, size_t begin, size_t end) {
     for (size_t v = begin; v < end; ++v) {
@@ -472,14 +412,14 @@ Status thin_out_once(const MakeCrossings& make, const Schedule& schedule, const 
                      Mesh& mesh, Vector<uint8_t>& steps, Merged& merged) {
   Crossings surface;
   if (Status s = make(surface); !s.ok()) return s;
-  const Buffer<Place> places = places_of(surface.xyz, mesh, schedule);
+  const Buffer<SizedPlace> places = places_of(surface.xyz, mesh, schedule);
   surface.xyz = Buffer<float>();
   if (steps.empty()) steps.assign(places.size(), kSteps);
   Thinning thinning(std::move(surface.abc), places, steps, mesh.most_neighbors, schedule);
-  const Bounds bounds = bounds_of(places);
+  const Box3 bounds = bounds_of(places);
   const float side = kSide * static_cast<float>(mesh.delta);
   for (const float shift : kShifts) {
-    thinning.run(Grid(places, thinning.mesh(), bounds, side, shift, schedule));
+    thinning.run(ThinningGrid(places, thinning.mesh(), bounds, side, shift, schedule));
     if (Status s = ask(go_on); !s.ok()) return s;
   }
   fill(mesh, thinning.mesh(), places, schedule, merged.ids);
