@@ -38,15 +38,21 @@ struct Thinned {
   int tries = 0;
 };
 
-void thin_out(const samples::Soup& soup, plc::Sizing& sizing, Thinned& thinned) {
+// first: what is made the first time.
+void thin_out(const samples::Soup& first, const samples::Soup& soup, plc::Sizing& sizing,
+              Thinned& thinned) {
   thinned.mesh.delta = 1;
   thinned.mesh.sizing = &sizing;
   const auto make = [&](plc::Crossings& surface) -> plc::Status {
-    ++thinned.tries;
-    surface = {samples::buffer_of<float>(soup.xyz), samples::buffer_of<uint32_t>(soup.abc)};
+    const samples::Soup& made = ++thinned.tries == 1 ? first : soup;
+    surface = {samples::buffer_of<float>(made.xyz), samples::buffer_of<uint32_t>(made.abc)};
     return {};
   };
   REQUIRE(plc::thin_out(make, plc::Schedule({}), {}, thinned.mesh).ok());
+}
+
+void thin_out(const samples::Soup& soup, plc::Sizing& sizing, Thinned& thinned) {
+  thin_out(soup, soup, sizing, thinned);
 }
 
 }  // namespace
@@ -70,4 +76,26 @@ TEST_CASE("sheets that thinned out would meet stay finer, by what is found in th
   // Nothing was left to find where blocks are side by side.
   CHECK(alone.tries == 1);
   CHECK(shell.tries == 1);
+}
+
+// No surface is known that meets itself across blocks once it is thinned out: one that does from
+// the start takes its place.
+TEST_CASE("where the whole meets itself it is made once more, and stays finer there",
+          "[thinning]") {
+  Evenly even;
+  const auto pair = [](double apart) {
+    samples::Soup other = rough_ball(1);
+    for (size_t v = 0; v < other.xyz.size(); v += 3) other.xyz[v] += apart;
+    samples::Soup both = rough_ball(1);
+    both.append(other);
+    return both;
+  };
+  Thinned once, twice;
+  thin_out(pair(13), even.sizing, once);
+  thin_out(pair(11), pair(13), even.sizing, twice);
+  CHECK(once.tries == 1);
+  CHECK(twice.tries == 2);
+  CHECK(twice.mesh.vertex_count() > once.mesh.vertex_count());
+  CHECK(plc::broken_invariant(twice.mesh).empty());
+  CHECK(plc::meeting_faces(twice.mesh, plc::SerialExecutor()).empty());
 }
