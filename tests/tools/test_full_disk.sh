@@ -8,6 +8,7 @@ failing=$(realpath "$2")
 here=$(mktemp -d)
 trap 'rm -rf "$here"' EXIT
 cd "$here" || exit 1
+states='absent there'
 faults=0
 failures=0
 
@@ -29,7 +30,7 @@ whole() {  # FILE: those with times in them as far as they can be
   esac
 }
 
-full() {  # NAME FILES COMMAND...: all that it writes is FILES in out/
+full() {  # NAME FILES COMMAND...: all that it writes is FILES in out/; as they are $states before
   local name=$1 files=$2 code file before n
   shift 2
   rm -rf out whole
@@ -39,7 +40,7 @@ full() {  # NAME FILES COMMAND...: all that it writes is FILES in out/
   if [ "$(cd whole && echo *)" != "$(tr ' ' '\n' <<<"$files" | sort | xargs)" ]; then
     fails "$name" 0 "writes $(cd whole && echo *)"
   fi
-  for before in absent there; do
+  for before in $states; do
     for ((n = 1; ; ++n)); do
       rm -rf out old failed
       mkdir out old
@@ -73,10 +74,11 @@ for suffix in nrrd mha; do
   full "phantom .$suffix" a.$suffix "$pellicle" phantom chain --size 24 -o out/a.$suffix
 done
 full "phantom .mhd" "a.mhd a.raw" "$pellicle" phantom chain --size 24 -o out/a.mhd
-for suffix in ply stl obj off vtp vtk gii glb 3mf; do
-  full "extract .$suffix" a.$suffix \
-    "$pellicle" extract ball.nrrd --iso 0.5 --levels 0 --quiet -o out/a.$suffix
-done
+mesh() { full "mesh .$1" "a.$1" "$pellicle" mesh ball.ply -o "out/a.$1"; }
+mesh ply
+states=absent
+for suffix in stl obj off vtp vtk gii glb 3mf; do mesh $suffix; done
+states='absent there'
 full "extract with report and trace" "a.ply a.json a.csv" "$pellicle" extract ball.nrrd --iso 0.5 \
   --levels 1 --quiet -o out/a.ply --report out/a.json --trace out/a.csv
 full "extract --labels" "a-1.ply a-1.json a-2.ply a-2.json" "$pellicle" extract \
@@ -99,7 +101,7 @@ full "measure" "a.vtp a.json" "$pellicle" measure ball.ply --curvature -o out/a.
 if "$pellicle" view ball.nrrd ball.ply -o page.html >/dev/null 2>&1; then
   full "view" a.html "$pellicle" view ball.nrrd ball.ply -o out/a.html
 fi
-full "render" a.png "$pellicle" render ball.ply -o out/a.png
+full "render" a.png "$pellicle" render ball.ply --size 100 -o out/a.png
 
 echo "$faults faults, $failures failures"
 [ $failures -eq 0 ]
