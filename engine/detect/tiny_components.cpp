@@ -9,9 +9,6 @@
 
 namespace plc {
 
-namespace {
-
-// Signed volume, relative to one of its vertices.
 double signed_volume(const Mesh& mesh, const Vector<uint32_t>& component) {
   const Vec3 origin = mesh.at(component[0]);
   double six_volume = 0;
@@ -27,8 +24,6 @@ double signed_volume(const Mesh& mesh, const Vector<uint32_t>& component) {
   }
   return six_volume / 6;
 }
-
-}  // namespace
 
 bool is_tetrahedron(const Mesh& mesh, uint32_t v) {
   if (mesh.valence(v) != 3) return false;

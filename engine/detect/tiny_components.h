@@ -9,6 +9,10 @@
 
 namespace plc {
 
+// What a component encloses: less than 0 where it is a cavity. It is summed relative to its first
+// vertex.
+double signed_volume(const Mesh& mesh, const Vector<uint32_t>& component);
+
 // v and its neighbours are a whole component of four vertices.
 bool is_tetrahedron(const Mesh& mesh, uint32_t v);
 void delete_tetrahedron(Mesh& mesh, uint32_t v);

@@ -9,6 +9,7 @@
 #include "engine/recover/cost.h"
 #include "engine/recover/frozen_sites.h"
 #include "engine/resolve/refinement.h"
+#include "engine/start/crumbs.h"
 #include "engine/start/folds.h"
 
 namespace plc {
@@ -274,12 +275,22 @@ void Recovery::count_frozen() {
 
 void Recovery::check() {
   evolution_.check_all(record().seconds, record().operations);
+  delete_crumbs();
   record().vertices = mesh_.vertex_count();
   // The search for faces that meet takes twice as long where a twentieth of the vertices have ids
   // far from those of their neighbours.
   renumber();
   evolution_.restart();
   phase_ = Phase::kVerify;
+}
+
+// Of an adaptive mesh on the full image. What starts where the user says is what the user wants.
+void Recovery::delete_crumbs() {
+  const Init init = spec_.start.init;
+  const bool is_asked_for = init == Init::kSeeds || init == Init::kMask || init == Init::kMesh;
+  const std::optional<float> iso = iso_of(level_);
+  if (mesh_.sizing == nullptr || level_ != 0 || !iso || is_asked_for) return;
+  plc::delete_crumbs(mesh_, {guide_.image, *iso, spec_.inside_above});
 }
 
 // The guards keep the surface from meeting itself. Every level ends with a test that they did;

@@ -173,6 +173,7 @@ class Recovery {
   Status iterate();
   void count_frozen();
   void check();
+  void delete_crumbs();
   Status verify();
   bool searched_again() const;
   bool is_due_early() const;

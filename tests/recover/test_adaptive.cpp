@@ -98,6 +98,17 @@ Run sheets() {
   });
 }
 
+// A cube of 7 voxels, and a box of 3 x 3 x `height` that touches it by an edge's end.
+Run crumb(int height) {
+  return run_of("crumb", {20, 20, 20}, [height](double x, double y, double z) {
+    const auto within = [](double c, int low, int high) { return low <= c && c <= high; };
+    const bool cube = within(x, 4, 10) && within(y, 4, 10) && within(z, 4, 10);
+    const int low = height == 3 ? 10 : 11;
+    const bool box = within(x, 11, 13) && within(y, 11, 13) && within(z, low, low + height - 1);
+    return cube || box ? 1.0 : -1.0;
+  });
+}
+
 Run direct(Run run) {
   run.pyramid.levels = 0;
   run.recovery.isos = {0.5};
@@ -226,6 +237,12 @@ TEST_CASE(
     "[adaptive]") {
   const Result r = recovered(direct(sheets()));
   CHECK(r.records[0].iterations < 400);  // 141; 1175 where a vertex counts all its energy
+}
+
+TEST_CASE("a crumb that the image joins to the object by a corner is not left behind",
+          "[adaptive]") {
+  CHECK(recovered(direct(crumb(2))).measures.components == 1);
+  CHECK(recovered(direct(crumb(3))).measures.components == 2);  // 27 voxels
 }
 
 TEST_CASE("an adaptive run that is saved and restored goes on with the same bits", "[adaptive]") {
