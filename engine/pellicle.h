@@ -322,9 +322,9 @@ typedef enum plc_mesh_kind PLC_INT {
   PLC_MESH_UNIFORM = 0,  /* edges of one length everywhere, the voxels': the paper's (3.2) */
   PLC_MESH_ADAPTIVE = 1, /* edges by how much the image's iso-surface bends; sheets come as near to
                             each other as the image has them. Needs iso, and no springs. Crumbs,
-                            parts of the surface with no 27 voxels of the object that are joined
-                            by faces beneath them, are left out at the end, but for the largest
-                            and where it starts from PLC_INIT_SEEDS, _MASK or _MESH */
+                            components with fewer than 27 voxels of the object beneath them, are
+                            left out at the end, but for the largest component and where it
+                            starts from PLC_INIT_SEEDS, _MASK or _MESH */
   PLC_MESH_AUTO = 2 /* adaptive where the force is PLC_FORCE_ISO, without springs and edge, else
                        uniform; the surface's parameters tell which */
 } plc_mesh_kind;

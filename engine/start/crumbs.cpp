@@ -49,21 +49,34 @@ Vector<uint32_t> component_of(const Mesh& mesh, uint32_t v, Vector<uint8_t>& see
   return component;
 }
 
-// Whether the voxel that is nearest to half a voxel beneath v is one of many.
-bool is_above_joined(const Mesh& mesh, const ImageObject& object, uint32_t v) {
-  const ImageView& image = object.image;
+// The voxel that is nearest to half a voxel beneath v.
+Voxel beneath(const Mesh& mesh, const ImageView& image, uint32_t v) {
   const Vec3 p = mesh.at(v);
   const Vec3 n = vertex_normal(mesh, v);
   const float xyz[3] = {p.x, p.y, p.z}, normal[3] = {n.x, n.y, n.z};
-  Voxel beneath;
+  Voxel at;
   for (size_t a = 0; a < 3; ++a) {
-    beneath[a] = static_cast<int32_t>(
+    at[a] = static_cast<int32_t>(
         std::round(image.scale[a] * xyz[a] + image.offset[a] - 0.5F * normal[a]));
   }
+  return at;
+}
+
+// Whether a component has many voxels of the object beneath it, or one of many.
+bool holds_many(const Mesh& mesh, const ImageObject& object, const Vector<uint32_t>& component) {
+  constexpr auto kMany = static_cast<size_t>(kPlaceVoxels);
+  const ImageView& image = object.image;
   const auto has = [&](const Voxel& at) {
     return is_within(image.dims, at) && object.has(image_value(image, at[0], at[1], at[2]));
   };
-  return has(beneath) && is_joined(beneath, size_t{kPlaceVoxels}, has);
+  Vector<Voxel> held;
+  for (const uint32_t v : component) {
+    const Voxel at = beneath(mesh, image, v);
+    if (!has(at) || std::find(held.begin(), held.end(), at) != held.end()) continue;
+    held.push_back(at);
+    if (held.size() == kMany || is_joined(at, kMany, has)) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -76,17 +89,17 @@ int64_t delete_crumbs(Mesh& mesh, const ImageObject& object) {
   for (uint32_t v = 0; v < mesh.slots(); ++v) {
     if (seen[v] != 0 || !mesh.alive(v)) continue;
     Vector<uint32_t> component = component_of(mesh, v, seen);
-    const auto stays = [&](uint32_t w) {
-      return mesh.is_held(w) || is_above_joined(mesh, object, w);
-    };
     if (signed_volume(mesh, component) < 0) {
       cavities.push_back(box_of(mesh, component));
       continue;
     }
     most = std::max(most, component.size());
-    if (std::none_of(component.begin(), component.end(), stays)) {
-      crumbs.push_back(std::move(component));
+    const auto is_held = [&](uint32_t w) { return mesh.is_held(w); };
+    if (holds_many(mesh, object, component) ||
+        std::any_of(component.begin(), component.end(), is_held)) {
+      continue;
     }
+    crumbs.push_back(std::move(component));
   }
   int64_t deleted = 0;
   for (const Vector<uint32_t>& crumb : crumbs) {
