@@ -7,6 +7,7 @@
 
 #include "engine/base/constants.h"
 #include "engine/detect/tiny_components.h"
+#include "engine/guard/obstacles.h"
 #include "engine/start/joined_voxels.h"
 #include "engine/transform/edge.h"
 #include "kernels/image_value.h"
@@ -94,16 +95,12 @@ int64_t delete_crumbs(Mesh& mesh, const ImageObject& object) {
       continue;
     }
     most = std::max(most, component.size());
-    const auto is_held = [&](uint32_t w) { return mesh.is_held(w); };
-    if (holds_many(mesh, object, component) ||
-        std::any_of(component.begin(), component.end(), is_held)) {
-      continue;
-    }
-    crumbs.push_back(std::move(component));
+    if (!holds_many(mesh, object, component)) crumbs.push_back(std::move(component));
   }
   int64_t deleted = 0;
   for (const Vector<uint32_t>& crumb : crumbs) {
-    if (crumb.size() == most && !mesh.is_patch()) continue;
+    if (crumb.size() == most) continue;
+    if (mesh.obstacles != nullptr && mesh.obstacles->any_inside(mesh, crumb)) continue;
     const Box box = box_of(mesh, crumb);
     const auto inside = [&](const Box& cavity) { return box.holds(cavity); };
     if (std::any_of(cavities.begin(), cavities.end(), inside)) continue;
