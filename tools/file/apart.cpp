@@ -21,6 +21,7 @@
 
 #include "tools/file/checked_sizes.h"
 #include "tools/file/failure.h"
+#include "tools/file/fork.h"
 
 // Sanitizers reserve address space of their own and do not survive a limit.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -227,7 +228,7 @@ Parcel apart(const std::string& name, const std::string& what, const ApartLimits
   Descriptor here(ends[0]);
   Descriptor there(ends[1]);
   const pid_t parent = getpid();
-  const pid_t id = fork();
+  const pid_t id = fork_unhandled(Caught::kIgnored);
   if (id < 0) throw system_failure();
   if (id == 0) {
     here.reset();
