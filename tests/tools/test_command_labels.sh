@@ -87,7 +87,7 @@ awk -F'\t' 'NR > 1 { ++rows; if ($14 < 0.975 || $14 > 1.02) exit 1 } END { if (r
 find out -mindepth 1 -delete
 
 # ---- the frame: voxel indices and mm of the whole image, whatever the crop
-zeros() { head -c "$1" /dev/zero; }
+zeros() { local i; for ((i = 0; i < $1; ++i)); do printf '\0'; done; }
 {
   printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 24 24\nspace: left-posterior-superior\n'
   printf 'space directions: (0,2,0) (-2,0,0) (0,0,2)\nspace origin: (100,200,300)\n'
