@@ -40,7 +40,7 @@ double seconds_of(const timeval& time) {
 int start_child(const std::vector<std::string>& words, const std::string& log, int kept) {
   const std::vector<char*> arguments = arguments_of(words);
   const pid_t parent = getpid();
-  const pid_t child = fork_unhandled(Caught::kEnd);
+  const pid_t child = fork_unhandled(Interrupts::kDefault);
   if (child < 0) {
     throw Failure{words[0] + ": cannot be started: " + std::generic_category().message(errno)};
   }
@@ -95,7 +95,7 @@ int run_program(const std::vector<std::string>& words, std::string& output) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) return kCannotRun;
   const std::vector<char*> arguments = arguments_of(words);
-  const pid_t child = fork_unhandled(Caught::kEnd);
+  const pid_t child = fork_unhandled(Interrupts::kDefault);
   if (child == 0) {
     if (dup2(ends[1], STDOUT_FILENO) >= 0) execvp(arguments[0], arguments.data());
     _exit(kCannotRun);

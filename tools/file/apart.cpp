@@ -159,7 +159,6 @@ bool send_parcel(int socket, const Head& head, const std::string& text) {
                             const ApartLimits& limits, const std::function<Parcel()>& work) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // it has died before that
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
   be_silent();
   set_limits(limits);
   std::string message;
@@ -228,7 +227,7 @@ Parcel apart(const std::string& name, const std::string& what, const ApartLimits
   Descriptor here(ends[0]);
   Descriptor there(ends[1]);
   const pid_t parent = getpid();
-  const pid_t id = fork_unhandled(Caught::kIgnored);
+  const pid_t id = fork_unhandled(Interrupts::kIgnored);
   if (id < 0) throw system_failure();
   if (id == 0) {
     here.reset();

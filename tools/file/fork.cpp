@@ -11,20 +11,17 @@ namespace {
 
 constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
-void replace_handlers(Caught caught) {
+void replace_handlers(Interrupts interrupts) {
   for (const int signal : kSignals) {
-    struct sigaction action = {};
-    sigaction(signal, nullptr, &action);
-    if (action.sa_handler == SIG_DFL || action.sa_handler == SIG_IGN) continue;
-    action = {};
-    action.sa_handler = caught == Caught::kEnd ? SIG_DFL : SIG_IGN;
-    sigaction(signal, &action, nullptr);
+    // In this order: to ignore one takes it away that is waiting.
+    const auto before = std::signal(signal, SIG_DFL);
+    if (interrupts == Interrupts::kIgnored || before == SIG_IGN) std::signal(signal, SIG_IGN);
   }
 }
 
 }  // namespace
 
-pid_t fork_unhandled(Caught caught) {
+pid_t fork_unhandled(Interrupts interrupts) {
   sigset_t these;
   sigset_t before;
   sigemptyset(&these);
@@ -32,7 +29,7 @@ pid_t fork_unhandled(Caught caught) {
   pthread_sigmask(SIG_BLOCK, &these, &before);
   const pid_t child = fork();
   const int error = errno;
-  if (child == 0) replace_handlers(caught);
+  if (child == 0) replace_handlers(interrupts);
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   errno = error;
   return child;
