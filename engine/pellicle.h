@@ -391,8 +391,9 @@ typedef struct plc_parameters {
   double gradient_tangent; /* beta_gradI (8), along the tangent plane; may keep a level from rest */
   double gradient_bound;   /* norm of the gradient, in window per U_h, at which (8) is 1; > 0 */
   double mass;             /* m (4), > 0 */
-  double damping;          /* gamma (4), >= 0 */
-  double time_step;        /* dt, > 0; lowered where the forces make it unstable */
+  double damping;          /* gamma (4), >= 0; times 2.8 in an adaptive mesh with an iso force and
+                              without attachments: its vertices weigh by the stiffness of forces */
+  double time_step;        /* dt, > 0; times 1.4 there; lowered where the forces make it unstable */
   double max_move;         /* bound of a vertex's movement per iteration, in delta, (0, 1] */
   plc_bound bound;
   plc_anisotropy anisotropy;

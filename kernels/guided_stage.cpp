@@ -70,6 +70,21 @@ HWY_INLINE Floats value_from_star(const SurfaceForces& f, const Float4* sizes, F
   return hn::IfThenElseZero(adds, hn::Mul(hn::Sub(mean, own), part));
 }
 
+// Of the vertices i .. i + kLanes - 1.
+template <class Voxel>
+HWY_INLINE Floats compliance(const SurfaceForces& f, const Float4* sizes, uint32_t i) {
+  const FloatTag d;
+  const Floats3 place = sampled_place<true>(f, i);
+  const Floats3 reach = load3(f.normal, i) * hn::Set(d, f.reach);
+  const Floats rise =
+      hn::Sub(sample<Voxel>(f.image, place + reach), sample<Voxel>(f.image, place - reach));
+  const Floats pull = hn::Abs(hn::Mul(rise, hn::Set(d, f.attraction / (f.reach + f.reach))));
+  const Floats bend = hn::Mul(hn::Set(d, static_cast<float>(kBendStiffness)),
+                              stiffness(f, load_packed4(sizes + i).w));
+  // Of 0 it is infinite.
+  return hn::Min(hn::Div(hn::Set(d, 1.0F), hn::Add(pull, bend)), hn::Set(d, kMostCompliance));
+}
+
 // The image's value for the vertices i .. i + kLanes - 1.
 template <class Voxel, bool kSized, int kStage>
 HWY_INLINE Floats image_value_at(const SurfaceForces& f, const Float4* sizes, uint32_t i) {
@@ -78,6 +93,7 @@ HWY_INLINE Floats image_value_at(const SurfaceForces& f, const Float4* sizes, ui
   const FloatTag d;
   if constexpr (kStage == 0) {
     hn::StoreU(value_from_star<Voxel>(f, sizes, own, i), d, f.from_star + i);
+    hn::StoreU(compliance<Voxel>(f, sizes, i), d, f.compliance + i);
   }
   return hn::Add(own, hn::LoadU(d, f.from_star + i));
 }
@@ -94,7 +110,9 @@ HWY_INLINE Floats3 surface_force(const SurfaceForces& f, const Rk4Streams& s, Fl
   if constexpr (kSized) alpha = stiffness(f, load_packed4(s.position + i).w);
   const Floats3 bent = where(alive, (load_packed(f.laplacian + i) - around) * alpha);
   const Floats push = hn::Mul(hn::Set(d, f.attraction), hn::Sub(hn::Set(d, f.iso), value));
-  return bent + load3(f.normal, i) * push;
+  const Floats3 sum = bent + load3(f.normal, i) * push;
+  if constexpr (!kSized) return sum;
+  return sum * hn::LoadU(d, f.compliance + i);
 }
 
 // A stage reads more streams than the hardware follows, each of them in another page, and voxels

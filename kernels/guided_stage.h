@@ -12,6 +12,10 @@
 // after the other.
 namespace plc::kernels {
 
+// Of (5) as a vertex feels it, per alpha_c.
+inline constexpr double kBendStiffness = 2.6;
+inline constexpr float kMostCompliance = 2;
+
 struct SurfaceForces {
   RingView ring;
   const Float4* laplacian;  // of the stage, from laplacian() over the whole mesh
@@ -28,11 +32,19 @@ struct SurfaceForces {
   // above delta / delta, star) in it, where the vertex has no more than kRingSlots neighbours. What
   // that adds to the value at the start of a step holds for the step: stage 0 writes it, as what is
   // sampled in between is near, and six times as much as the values themselves.
+  //
+  // Both forces are multiplied by a vertex's compliance, the inverse of their stiffness there, at
+  // most kMostCompliance: that of (7), by what the image rises along the normal from `reach` behind
+  // to `reach` ahead, and kBendStiffness of (5)'s coefficient. So all vertices approach their
+  // places at one rate, where the image is steep as where it is flat; places do not depend on it.
+  // Stage 0 writes it, too.
   bool sized = false;
   float smoothing = 0;
   float facets = 0;
   float star = 0;
-  float* from_star = nullptr;  // per vertex
+  float reach = 0;              // in units of the mesh
+  float* from_star = nullptr;   // per vertex
+  float* compliance = nullptr;  // per vertex
 };
 
 // Stages 0..2, and stage 3 where something else comes before the move.

@@ -91,7 +91,8 @@ Triple surface_force(const SurfaceForces& f, float value, float above, uint32_t 
                  f.sized ? stiffness(f, above) : f.curvature);
   }
   const Triple push = times(at(f.normal, i), f.attraction * (f.iso - value));
-  return {bent.x + push.x, bent.y + push.y, bent.z + push.z};
+  const Triple sum{bent.x + push.x, bent.y + push.y, bent.z + push.z};
+  return f.sized ? times(sum, f.compliance[i]) : sum;
 }
 
 // Where the image is sampled for a vertex.
@@ -122,6 +123,18 @@ float value_from_star(const SurfaceForces& f, const Float4* sizes, float own, ui
   return (sum * (1.0F / static_cast<float>(valence)) - own) * part;
 }
 
+float compliance(const SurfaceForces& f, const Float4* sizes, uint32_t v) {
+  const Float4 p = sampled_place(f, v);
+  const Triple reach = times(at(f.normal, v), f.reach);
+  const Float4 ends[2] = {{p.x + reach.x, p.y + reach.y, p.z + reach.z, 0.0F},
+                          {p.x - reach.x, p.y - reach.y, p.z - reach.z, 0.0F}};
+  float value[2];
+  sample_trilinear(f.image, ends, 0, 2, value);
+  const float pull = std::abs((value[0] - value[1]) * (f.attraction / (f.reach + f.reach)));
+  const float most = 1.0F / (pull + static_cast<float>(kBendStiffness) * stiffness(f, sizes[v].w));
+  return most < kMostCompliance ? most : kMostCompliance;
+}
+
 // The image's values for the vertices of a block.
 void block_values(int stage, const SurfaceForces& f, const Float4* sizes, uint32_t begin,
                   float* values) {
@@ -131,7 +144,10 @@ void block_values(int stage, const SurfaceForces& f, const Float4* sizes, uint32
   if (!f.sized) return;
   for (uint32_t l = 0; l < kRingLanes; ++l) {
     float& from_star = f.from_star[begin + l];
-    if (stage == 0) from_star = value_from_star(f, sizes, values[l], begin + l);
+    if (stage == 0) {
+      from_star = value_from_star(f, sizes, values[l], begin + l);
+      f.compliance[begin + l] = compliance(f, sizes, begin + l);
+    }
     values[l] = values[l] + from_star;
   }
 }

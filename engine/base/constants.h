@@ -50,6 +50,15 @@ inline constexpr float kStar = 0.75F;
 inline constexpr float kNoiseCurvature = 6;
 inline constexpr float kMostNoise = 1;
 
+// How far to both sides of a vertex its compliance (guided_stage.h) looks, in delta.
+inline constexpr float kComplianceReach = 0.25F;
+// Damping and time step of an adaptive mesh, as parts of the model's: all stiffnesses are 1 or less
+// there, and what (4) damps most at once, which the model's does not, goes to its place soonest.
+// Without compliances, as the model has them, Iguana, bonsai and a head CT rest after 28, 28 and 20
+// iterations, with them after 19, 19 and 15, as near; with 1.4 alone steep images tremble.
+inline constexpr float kComplyingDamping = 2.8F;
+inline constexpr float kComplyingStep = 1.4F;
+
 // ---- slow vertices (3.6) --------------------------------------------------------------------
 
 // The constraints of a vertex are checked when it has moved 0.2 delta since its last check, or
@@ -199,8 +208,9 @@ inline constexpr double kLateEnergy = 10;
 // iso-surface of the full image: all is where it belongs then, and what still moves draws back from
 // parts thinner than it can hold, fast and for long. Of an abdominal CT a hundredth of the vertices
 // had nine tenths of the energy for 100 iterations, which ended no nearer to the iso-surface.
-// Surfaces that come from farther away end when their fronts do.
-inline constexpr double kMostEnergy = 30;
+// At 30 three of the eight images of perf/results/distances.md took one to four iterations more
+// than at 8, no nearer. Surfaces that come from farther away end when their fronts do.
+inline constexpr double kMostEnergy = 10;
 // Iterations before an adaptive mesh is searched at first: the energy is near 0 from rest.
 inline constexpr int kEarlySearch = 5;
 // Times that I_0 is searched again after it has converged: what a bubble grows into may hide more.

@@ -43,7 +43,7 @@ void split_runs(const Blocks& blocks, const Body& body) {
 float stable_time_step(const Model& model, float stiffness) {
   const double gradient =
       std::max(std::abs(model.gradient_normal), std::abs(model.gradient_tangent));
-  const double stiffest = 2.6 * static_cast<double>(model.curvature) +
+  const double stiffest = kernels::kBendStiffness * static_cast<double>(model.curvature) +
                           12.0 * static_cast<double>(model.spring) +
                           std::abs(static_cast<double>(model.attraction)) +
                           2 / kUnitPerDelta * gradient + static_cast<double>(stiffness);
@@ -53,11 +53,23 @@ float stable_time_step(const Model& model, float stiffness) {
   return std::min(model.time_step, static_cast<float>(std::min(longest, damped)));
 }
 
+Model complying(Model model) {
+  model.damping *= kComplyingDamping;
+  model.time_step *= kComplyingStep;
+  model.curvature = 0;
+  model.attraction = 1;
+  for (float* f : {&model.spring, &model.gradient_normal, &model.gradient_tangent}) {
+    *f *= kernels::kMostCompliance;
+  }
+  return model;
+}
+
 Dynamics::Dynamics(Mesh& mesh, const Schedule& schedule, const Model& model, float counted)
     : mesh_(mesh),
       schedule_(schedule),
       model_(model),
       counted_(counted),
+      damping_(model.damping),
       time_step_(stable_time_step(model)) {}
 
 void Dynamics::resize(const Guide& guide) {
@@ -70,7 +82,10 @@ void Dynamics::resize(const Guide& guide) {
     b.reserve(room);
     b.resize(mesh_.position.size());
   }
-  if (mesh_.sizing != nullptr) from_star_.resize(n);
+  if (mesh_.sizing != nullptr) {
+    from_star_.resize(n);
+    compliance_.resize(n);
+  }
   if (!only_surface_forces(guide)) force_.resize(n);
   if (!stretched(guide.metric)) return;
   for (Streams3* s : {&metric_normal_, &metric_step_}) s->resize(n);
@@ -139,9 +154,12 @@ bool Dynamics::in_order(const Guide& guide) const {
 void Dynamics::begin_step(const Guide& guide, const Sleep* sleep) {
   resize(guide);
   choose_blocks(sleep);
-  Model stiff = model_;
-  stiff.curvature = curvature() + smoothing();
-  time_step_ = stable_time_step(stiff, guide.user == nullptr ? 0 : guide.user->stiffness());
+  complies_ = mesh_.sizing != nullptr && model_.attraction != 0 &&
+              (guide.user == nullptr || guide.user->attachments.empty());
+  Model model = complies_ ? complying(model_) : model_;
+  if (!complies_) model.curvature = curvature() + smoothing();
+  damping_ = model.damping;
+  time_step_ = stable_time_step(model, guide.user == nullptr ? 0 : guide.user->stiffness());
 }
 
 void Dynamics::save(StateWriter& to) const {
@@ -286,11 +304,17 @@ void Dynamics::gather_forces(int stage, const Guide& guide, uint32_t begin, uint
                           {model_.spring, rest_length_, guide.metric}, begin, end, force);
   }
   image_forces(stage, guide, begin, end);
+  if (complies_) {
+    for (uint32_t v = begin; v < end; ++v) force_.set(v, force_.at(v) * compliance_[v]);
+  }
   if (guide.user == nullptr) return;
-  const Motion motion{stage == 0 ? mesh_.velocity : speed_, model_.mass, model_.damping};
+  const Motion motion{stage == 0 ? mesh_.velocity : speed_, model_.mass, damping_};
   attach(*guide.user, motion, stage_position(stage), mesh_.normal, begin, end, force_);
   if (!guide.user->force) return;
-  for (uint32_t v = begin; v < end; ++v) force_.set(v, force_.at(v) + user_force_.at(v));
+  for (uint32_t v = begin; v < end; ++v) {
+    const Vec3 f = user_force_.at(v);
+    force_.set(v, force_.at(v) + (complies_ ? f * compliance_[v] : f));
+  }
 }
 
 // alpha_c of the mesh, and what comes to it in an adaptive one, where it is small, for noise.
@@ -343,7 +367,7 @@ const Streams3& Dynamics::image_normal(const Guide& guide) const {
 }
 
 kernels::Rk4Coefficients Dynamics::coefficients() const {
-  return {1.0F / model_.mass, model_.damping, time_step_};
+  return {1.0F / model_.mass, damping_, time_step_};
 }
 
 kernels::Rk4Streams Dynamics::streams(int stage) {
@@ -368,7 +392,9 @@ kernels::SurfaceForces Dynamics::surface_forces(int stage, const Guide& guide) {
           smoothing(),
           kFacets,
           kStar,
-          from_star_.data()};
+          kComplianceReach * static_cast<float>(mesh_.delta),
+          from_star_.data(),
+          compliance_.data()};
 }
 
 // The last stage reads its positions from the other buffer.

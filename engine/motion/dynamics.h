@@ -42,6 +42,10 @@ struct Model {
 // `stiffness` added to that of the model's forces.
 float stable_time_step(const Model& model, float stiffness = 0);
 
+// What a model is like where its forces are multiplied by compliances (kernels/guided_stage.h): (5)
+// and (7) are together of the stiffness 1, others grow by the most.
+Model complying(Model model);
+
 // The movement part of one iteration. Owns the streams that live within a step:
 //
 //   stream     bytes  written by
@@ -55,6 +59,7 @@ float stable_time_step(const Model& model, float stiffness = 0);
 //   along      24     normals: unit normals of the metric and their steps; only with a metric
 //   user       12     user force, per stage; only where there is one
 //   from star  4      the first stage, of an adaptive mesh (guided_stage.h)
+//   compliance 4      the first stage, of an adaptive mesh
 //
 // 72 bytes per vertex in a run of curvature and image, and 4 per block of 16.
 class Dynamics {
@@ -136,7 +141,10 @@ class Dynamics {
   const Schedule& schedule_;
   Model model_;
   float counted_;
-  float time_step_;  // of this step
+  // Of this step. Forces are multiplied by compliances in an adaptive mesh without attachments: the
+  // damping of these (user_constraints.h) is for the model's own, and what they draw stays behind.
+  bool complies_ = false;
+  float damping_, time_step_;
   float rest_length_ = 0;
   double energy_ = 0;
   double speed_of_fastest_ = 0;
@@ -147,7 +155,7 @@ class Dynamics {
   Streams3 user_force_;
   Buffer<Float4> stage_[2];
   Buffer<Float4> laplacian_;
-  Buffer<float> from_star_;
+  Buffer<float> from_star_, compliance_;
 };
 
 }  // namespace plc

@@ -17,8 +17,10 @@ namespace {
 EvolutionOptions evolution_options(const RecoverySpec& spec, int levels) {
   EvolutionOptions options;
   // The speed along the normal that every vertex would have at the energy epsilon.
-  const double speed = std::sqrt(2 * spec.epsilon / static_cast<double>(spec.model.mass)) *
-                       static_cast<double>(stable_time_step(spec.model));
+  const bool complies = spec.sizes && !spec.isos.empty() && spec.user.attachments.empty();
+  const Model model = complies ? complying(spec.model) : spec.model;
+  const double speed = std::sqrt(2 * spec.epsilon / static_cast<double>(model.mass)) *
+                       static_cast<double>(stable_time_step(model));
   if (spec.sleeping) options.speeds.calm = static_cast<float>(kCalmSpeed * speed);
   options.speeds.turn = static_cast<float>(kTurnSpeed * speed);
   if (spec.sizes && spec.start.init == Init::kIso && levels == 0) {
@@ -370,12 +372,13 @@ bool Recovery::confirmed(int calm) {
   if (c.since != 0) {
     return iteration >= least && iteration - c.since >= kConfirmIterations;
   }
-  if (!evolution_.any_asleep()) return iteration >= least;
-  if (iteration < std::max(c.not_before, least - kConfirmIterations)) return false;
-  if (mesh_.sizing != nullptr && searched_again()) {
+  const bool soon = iteration >= std::max(c.not_before, least - kConfirmIterations);
+  if (soon && mesh_.sizing != nullptr && searched_again()) {
     phase_ = Phase::kSearch;
     return false;
   }
+  if (!evolution_.any_asleep()) return iteration >= least;
+  if (!soon) return false;
   evolution_.wake_all();
   c.since = iteration;
   return false;

@@ -11,7 +11,7 @@
 namespace {
 
 constexpr int64_t kDims[3] = {44, 36, 32};
-constexpr uint64_t kHash = 0x4F58898B473A8D30;
+constexpr uint64_t kHash = 0x3a1e62066a367129;
 
 std::vector<int16_t> balls() {
   std::vector<int16_t> voxels;

@@ -30,6 +30,7 @@ struct Stage {
   std::vector<Float4> laplacian, next, moved_to;
   std::vector<float> streams[21], path;
   std::vector<float> from_star = random_floats(rings.count(), -0.1F, 0.1F, 39);
+  std::vector<float> compliance = random_floats(rings.count(), 0.1F, 2, 38);
   std::vector<uint8_t> turns;
   kernels::Movement movement;
 
@@ -94,21 +95,30 @@ kernels::SurfaceForces sized(Stage& s) {
   f.smoothing = 0.2F;
   f.facets = 0.25F;
   f.star = 0.75F;
+  f.reach = 0.3F;
   f.from_star = s.from_star.data();
+  f.compliance = s.compliance.data();
   return f;
+}
+
+float sample(const kernels::SurfaceForces& f, const Float4& place) {
+  float value;
+  scalar::sample_trilinear(f.image, &place, 0, 1, &value);
+  return value;
+}
+
+// The image's value `ahead` of a vertex along its normal, from a single sample.
+float own_value(const kernels::SurfaceForces& f, uint32_t v, float ahead = 0) {
+  const Float4 &p = f.position[v], &l = f.laplacian[v];
+  const float x = f.normal.x[v], y = f.normal.y[v], z = f.normal.z[v];
+  const float off = f.facets * (l.x * x + l.y * y + l.z * z) + ahead;
+  return sample(f, {p.x + off * x, p.y + off * y, p.z + off * z, 0});
 }
 
 // The image's value for a vertex, from single samples; stage > 0: with what stage 0 has left.
 float sized_value(int stage, const kernels::SurfaceForces& f, uint32_t v) {
-  const auto sample = [&f](Float4 place) {
-    float value;
-    scalar::sample_trilinear(f.image, &place, 0, 1, &value);
-    return value;
-  };
-  const Float4 &p = f.position[v], &l = f.laplacian[v];
-  const float x = f.normal.x[v], y = f.normal.y[v], z = f.normal.z[v];
-  const float off = f.facets * (l.x * x + l.y * y + l.z * z);
-  const float own = sample({p.x + off * x, p.y + off * y, p.z + off * z, 0});
+  const Float4& p = f.position[v];
+  const float own = own_value(f, v);
   if (stage > 0) return own + f.from_star[v];
   const float part = std::min(p.w, f.star);
   const uint32_t valence = f.ring.valence[v];
@@ -116,9 +126,19 @@ float sized_value(int stage, const kernels::SurfaceForces& f, uint32_t v) {
   float sum = 0;
   for (uint32_t k = 0; k < valence; ++k) {
     const Float4& q = f.position[f.ring.slot(v, k)];
-    sum += sample({(p.x + q.x) / 2, (p.y + q.y) / 2, (p.z + q.z) / 2, 0});
+    sum += sample(f, {(p.x + q.x) / 2, (p.y + q.y) / 2, (p.z + q.z) / 2, 0});
   }
   return own + (sum / static_cast<float>(valence) - own) * part;
+}
+
+// The inverse of what the forces on a vertex change by where it moves along its normal.
+float expected_compliance(const kernels::SurfaceForces& f, uint32_t v) {
+  const float rise = own_value(f, v, f.reach) - own_value(f, v, -f.reach);
+  const float size = std::max(1.0F, 1 + f.position[v].w);
+  const float bend = f.curvature / std::pow(size, 4.0F) + f.smoothing / (size * size);
+  const float stiffness = std::abs(f.attraction) * std::abs(rise) / (2 * f.reach) +
+                          static_cast<float>(kernels::kBendStiffness) * bend;
+  return std::min(1 / stiffness, kernels::kMostCompliance);
 }
 
 }  // namespace
@@ -133,7 +153,11 @@ TEST_CASE("the image of an adaptive mesh is looked at in the middles of long edg
   scalar::sized_iso_force(stage, f, f.position, 0, n, expected.three(18));
   Stage before;
   CHECK((expected.from_star != before.from_star) == (stage == 0));
+  CHECK((expected.compliance != before.compliance) == (stage == 0));
   for (uint32_t v = 0; v < n; ++v) {
+    if (stage == 0) {
+      REQUIRE(expected.compliance[v] == Approx(expected_compliance(f, v)).epsilon(1e-3));
+    }
     const float push = f.attraction * (f.iso - sized_value(stage, f, v));
     REQUIRE(expected.streams[18][v] ==
             Approx(before.streams[18][v] + push * f.normal.x[v]).margin(1e-4));
@@ -144,6 +168,7 @@ TEST_CASE("the image of an adaptive mesh is looked at in the middles of long edg
     const kernels::SurfaceForces g = sized(got);
     kernels::sized_iso_force(simd, stage, g, g.position, 0, n, got.three(18));
     CHECK(first_difference(got.from_star, expected.from_star) == -1);
+    CHECK(first_difference(got.compliance, expected.compliance) == -1);
     for (size_t a = 18; a < 21; ++a) {
       CHECK(first_difference(got.streams[a], expected.streams[a]) == -1);
     }
@@ -174,7 +199,13 @@ TEST_CASE("of an adaptive mesh stages have the bits of the scalar twin, and size
   for (int stage = 0; stage < 4; ++stage) {
     Stage expected;
     scalar::guided_stage(stage, kNewton, sized(expected), expected.rk4(), expected.all());
-    if (stage == 1) CHECK(first_difference(expected.result(), uniform.result()) != -1);
+    if (stage == 1) {
+      CHECK(first_difference(expected.result(), uniform.result()) != -1);
+      Stage stiff;
+      for (float& c : stiff.compliance) c *= 0.5F;
+      scalar::guided_stage(stage, kNewton, sized(stiff), stiff.rk4(), stiff.all());
+      CHECK(first_difference(expected.result(), stiff.result()) != -1);
+    }
     for (const SimdTarget simd : plc::available_simd_targets()) {
       CAPTURE(plc::simd_target_name(simd), stage);
       Stage got;

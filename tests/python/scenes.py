@@ -20,8 +20,9 @@ def pill():
 
 
 def endless():
-    """Parameters with which an extraction goes on until it is stopped."""
-    return {"epsilon": 1e-300, "max_iterations": 2**30, "sleeping": False}
+    """Parameters with which an extraction goes on until it is stopped: an adaptive mesh would come to
+    lie still, to the last bit."""
+    return {"mesh": "uniform", "epsilon": 1e-300, "max_iterations": 2**30, "sleeping": False}
 
 
 def octahedron(radius=1.0):
