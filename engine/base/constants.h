@@ -55,7 +55,7 @@ inline constexpr float kComplianceReach = 0.25F;
 // Damping and time step of an adaptive mesh, as parts of the model's: all stiffnesses are 1 or less
 // there, and what (4) damps most at once, which the model's does not, goes to its place soonest.
 // Without compliances, as the model has them, Iguana, bonsai and a head CT rest after 28, 28 and 20
-// iterations, with them after 19, 19 and 15, as near; with 1.4 alone steep images tremble.
+// iterations, with them after 19, 19 and 16, as near; with 1.4 alone steep images tremble.
 inline constexpr float kComplyingDamping = 2.8F;
 inline constexpr float kComplyingStep = 1.4F;
 
