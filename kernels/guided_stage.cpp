@@ -70,7 +70,7 @@ HWY_INLINE Floats value_from_star(const SurfaceForces& f, const Float4* sizes, F
   return hn::IfThenElseZero(adds, hn::Mul(hn::Sub(mean, own), part));
 }
 
-// Of the vertices i .. i + kLanes - 1.
+// The inverse of the stiffness of forces on the vertices i .. i + kLanes - 1.
 template <class Voxel>
 HWY_INLINE Floats compliance(const SurfaceForces& f, const Float4* sizes, uint32_t i) {
   const FloatTag d;

@@ -123,6 +123,7 @@ float value_from_star(const SurfaceForces& f, const Float4* sizes, float own, ui
   return (sum * (1.0F / static_cast<float>(valence)) - own) * part;
 }
 
+// The inverse of the stiffness of a vertex's forces.
 float compliance(const SurfaceForces& f, const Float4* sizes, uint32_t v) {
   const Float4 p = sampled_place(f, v);
   const Triple reach = times(at(f.normal, v), f.reach);

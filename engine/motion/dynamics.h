@@ -141,8 +141,8 @@ class Dynamics {
   const Schedule& schedule_;
   Model model_;
   float counted_;
-  // Of this step. Forces are multiplied by compliances in an adaptive mesh without attachments: the
-  // damping of these (user_constraints.h) is for the model's own, and what they draw stays behind.
+  // Of this step. Forces are multiplied by compliances in an adaptive mesh without attachments:
+  // those add damping (user_constraints.h) that is critical for forces as they are.
   bool complies_ = false;
   float damping_, time_step_;
   float rest_length_ = 0;
