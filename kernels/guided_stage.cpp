@@ -86,12 +86,12 @@ HWY_INLINE Floats compliance(const SurfaceForces& f, const Float4* sizes, uint32
 }
 
 // The image's value for the vertices i .. i + kLanes - 1.
-template <class Voxel, bool kSized, int kStage>
+template <class Voxel, bool kSized, bool kFirst>
 HWY_INLINE Floats image_value_at(const SurfaceForces& f, const Float4* sizes, uint32_t i) {
   const Floats own = sample<Voxel>(f.image, sampled_place<kSized>(f, i));
   if constexpr (!kSized) return own;
   const FloatTag d;
-  if constexpr (kStage == 0) {
+  if constexpr (kFirst) {
     hn::StoreU(value_from_star<Voxel>(f, sizes, own, i), d, f.from_star + i);
     hn::StoreU(compliance<Voxel>(f, sizes, i), d, f.compliance + i);
   }
@@ -162,34 +162,50 @@ HWY_INLINE void prefetch_block(const SurfaceForces& f, const Rk4Streams& s, uint
   if (kStage != 0) prefetch3(s.rate, begin);
 }
 
-// visit(first vertex of the block, samples of the image at its vertices) for every block. Sampling
-// waits for memory; in a loop of its own over a few blocks more of it is under way at once.
-template <int kStage, bool kSized, class Visit>
-HWY_INLINE void visit_blocks(const SurfaceForces& f, const Rk4Streams& s, const Blocks& blocks,
-                             const Visit& visit) {
-  constexpr size_t kChunk = 64;        // less than kAhead: their positions have come
+// The samples of the image at the vertices of the blocks `first` to `end`, in their order. Not
+// inlined: every stage would have it for every type of voxel, which takes half of this file's time
+// to compile.
+template <bool kSized, bool kFirst>
+HWY_NOINLINE void sample_blocks(const SurfaceForces& f, const Float4* sizes, const Blocks& blocks,
+                                size_t first, size_t end, float* values) {
   constexpr size_t kVoxelsAhead = 16;  // blocks
+  with_voxel_type(f.image.form.type, [&](auto voxel) HWY_ATTR {
+    using Voxel = decltype(voxel);
+    for (size_t b = first; b < end; ++b) {
+      if (blocks.comes(b + kVoxelsAhead)) {
+        prefetch_voxels<Voxel>(f, blocks.begin(b + kVoxelsAhead));
+      }
+      const uint32_t begin = blocks.begin(b);
+      for (uint32_t i = begin; i < begin + kRingLanes; i += kLanes, values += kLanes) {
+        hn::Store(image_value_at<Voxel, kSized, kFirst>(f, sizes, i), FloatTag(), values);
+      }
+    }
+  });
+}
+
+// visit(index of the block, samples of the image at its vertices) for every block. Sampling waits
+// for memory; in a loop of its own over a few blocks more of it is under way at once.
+template <bool kSized, bool kFirst, class Visit>
+HWY_INLINE void visit_samples(const SurfaceForces& f, const Float4* sizes, const Blocks& blocks,
+                              const Visit& visit) {
+  constexpr size_t kChunk = 64;  // less than kAhead: their positions have come
   alignas(64) float values[kChunk * kRingLanes];
   for (size_t first = 0; first < blocks.count; first += kChunk) {
     const size_t end = HWY_MIN(first + kChunk, blocks.count);
-    with_voxel_type(f.image.form.type, [&](auto voxel) HWY_ATTR {
-      using Voxel = decltype(voxel);
-      for (size_t b = first; b < end; ++b) {
-        if (blocks.comes(b + kVoxelsAhead)) {
-          prefetch_voxels<Voxel>(f, blocks.begin(b + kVoxelsAhead));
-        }
-        const uint32_t begin = blocks.begin(b);
-        for (uint32_t i = 0; i < kRingLanes; i += kLanes) {
-          hn::Store(image_value_at<Voxel, kSized, kStage>(f, s.position, begin + i), FloatTag(),
-                    values + (b - first) * kRingLanes + i);
-        }
-      }
-    });
-    for (size_t b = first; b < end; ++b) {
-      if (blocks.comes(b + kAhead)) prefetch_block<kStage>(f, s, blocks.begin(b + kAhead));
-      visit(blocks.begin(b), values + (b - first) * kRingLanes);
-    }
+    sample_blocks<kSized, kFirst>(f, sizes, blocks, first, end, values);
+    for (size_t b = first; b < end; ++b) visit(b, values + (b - first) * kRingLanes);
   }
+}
+
+// The same of a stage: visit(first vertex of the block, samples).
+template <int kStage, bool kSized, class Visit>
+HWY_INLINE void visit_blocks(const SurfaceForces& f, const Rk4Streams& s, const Blocks& blocks,
+                             const Visit& visit) {
+  visit_samples<kSized, kSized && kStage == 0>(
+      f, s.position, blocks, [&](size_t b, const float* values) HWY_ATTR {
+        if (blocks.comes(b + kAhead)) prefetch_block<kStage>(f, s, blocks.begin(b + kAhead));
+        visit(blocks.begin(b), values);
+      });
 }
 
 template <int kStage, bool kSized>
@@ -241,18 +257,29 @@ Movement guided_move(const Rk4Coefficients& coefficients, const SurfaceForces& f
                       : move_blocks<false>(coefficients, forces, streams, bound, ends, blocks);
 }
 
+template <bool kFirst>
+HWY_INLINE void add_iso_force(const SurfaceForces& f, const Float4* sizes, const Blocks& blocks,
+                              const Float3s& force) {
+  const FloatTag d;
+  const Floats iso = hn::Set(d, f.iso), attraction = hn::Set(d, f.attraction);
+  visit_samples<true, kFirst>(f, sizes, blocks, [&](size_t b, const float* values) HWY_ATTR {
+    const uint32_t begin = blocks.begin(b);
+    for (uint32_t i = begin; i < begin + kRingLanes; i += kLanes) {
+      const Floats value = hn::Load(d, values + (i - begin));
+      const Floats push = hn::Mul(attraction, hn::Sub(iso, value));
+      store3(load3(force, i) + load3(f.normal, i) * push, force, i);
+    }
+  });
+}
+
 void sized_iso_force(int stage, const SurfaceForces& f, const Float4* sizes, uint32_t begin,
                      uint32_t end, Float3s force) {
-  const FloatTag d;
-  with_stage(stage, [&](auto k) HWY_ATTR {
-    with_voxel_type(f.image.form.type, [&](auto voxel) HWY_ATTR {
-      for (uint32_t i = begin; i < end; i += kLanes) {
-        const Floats value = image_value_at<decltype(voxel), true, decltype(k)::value>(f, sizes, i);
-        const Floats push = hn::Mul(hn::Set(d, f.attraction), hn::Sub(hn::Set(d, f.iso), value));
-        store3(load3(force, i) + load3(f.normal, i) * push, force, i);
-      }
-    });
-  });
+  const Blocks blocks = Blocks::range(begin, end);
+  if (stage == 0) {
+    add_iso_force<true>(f, sizes, blocks, force);
+  } else {
+    add_iso_force<false>(f, sizes, blocks, force);
+  }
 }
 
 #endif  // PLC_SCALAR_TARGET
