@@ -12,6 +12,7 @@
 
 #include "engine/base/blocks.h"
 #include "engine/mesh/face_rings.h"
+#include "engine/start/cell_faces.h"
 #include "engine/start/joined_voxels.h"
 #include "engine/start/small_parts.h"
 #include "kernels/image_value.h"
@@ -25,13 +26,6 @@ namespace {
 constexpr size_t kLayers = 8;
 // Edges from a lattice point to larger coordinates: direction d = 1 .. 7, bit a of d is axis a.
 constexpr size_t kDirections = 7;
-
-// The corners of the six tetrahedra of a cell, bit a is axis a: along three axes in turn. All are
-// positively oriented: odd orders of axes have two corners exchanged.
-constexpr uint32_t kTetrahedra[6][4] = {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7},
-                                        {0, 3, 2, 7}, {0, 5, 1, 7}, {0, 6, 4, 7}};
-// Even permutations that put the corner, or the two corners, of one side first.
-constexpr uint32_t kOneFirst[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 0, 1, 3}, {3, 0, 2, 1}};
 
 constexpr uint32_t kAllCorners = 255;
 
@@ -158,24 +152,6 @@ void visit_crossed(const Lattice& lattice, const Vector<uint8_t>& inside,
   });
 }
 
-// Bit d - 1: the edge of direction d from the first corner of a cell is crossed.
-uint32_t crossed_edges(uint32_t inside) {
-  return ((inside & 1) != 0 ? ~inside & kAllCorners : inside) >> 1;
-}
-
-// How many faces there are in a cell.
-constexpr std::array<uint8_t, kAllCorners + 1> kFaces = [] {
-  std::array<uint8_t, kAllCorners + 1> faces{};
-  for (uint32_t inside = 0; inside <= kAllCorners; ++inside) {
-    for (const auto& tetrahedron : kTetrahedra) {
-      uint32_t count = 0;
-      for (const uint32_t corner : tetrahedron) count += inside >> corner & 1;
-      faces[inside] = static_cast<uint8_t>(faces[inside] + (count % 4 == 0 ? 0 : 2 - count % 2));
-    }
-  }
-  return faces;
-}();
-
 size_t count_of(uint32_t bits) {
   return static_cast<size_t>(std::popcount(bits));
 }
@@ -194,8 +170,10 @@ struct Slice {
 
 class Builder {
  public:
-  Builder(const ImageObject& object, const LatticeValues& values, const Executor& executor)
+  Builder(const ImageObject& object, const LatticeValues& values, const CellFaces& cell,
+          const Executor& executor)
       : lattice_(object, values),
+        cell_(cell),
         executor_(executor),
         layers_(lattice_.slices() - 1),
         first_id_(layers_ + 1, 0),
@@ -209,7 +187,7 @@ class Builder {
         lattice_.classify(z + 1, above);
         visit_crossed(lattice_, inside, above, [&](size_t, size_t, uint32_t corners) {
           first_id_[z + 1] += count_of(crossed_edges(corners));
-          first_face_[z + 1] += kFaces[corners];
+          first_face_[z + 1] += cell_.first[corners + 1] - cell_.first[corners];
         });
         inside.swap(above);
       }
@@ -325,47 +303,24 @@ class Builder {
     visit_crossed(lattice_, lower.inside, upper.inside, [&](size_t x, size_t y, uint32_t inside) {
       const size_t i = lattice_.point(x, y);
       const size_t at[4] = {i, i + 1, i + nx, i + nx + 1};
-      // The vertex between two corners of a tetrahedron: one contains the bits of the other.
-      const auto between = [&](uint32_t p, uint32_t q) {
-        const uint32_t low = p & q;
-        const Slice& slice = low < 4 ? lower : upper;
-        return slice.id(at[low & 3], p ^ q);
-      };
-      for (const auto& tetrahedron : kTetrahedra) out = cut(tetrahedron, inside, between, out);
+      for (uint32_t f = cell_.first[inside]; f < cell_.first[inside + 1]; ++f) {
+        for (const uint8_t vertex : cell_.faces[f]) {
+          const uint32_t corner = CellFaces::corner(vertex);
+          const Slice& slice = corner < 4 ? lower : upper;
+          *out++ = slice.id(at[corner & 3], CellFaces::direction(vertex));
+        }
+      }
     });
     return out;
   }
 
-  // The one or two faces in a tetrahedron, away from its corners that are inside.
-  template <typename Between>
-  static uint32_t* cut(const uint32_t (&corner)[4], uint32_t inside, const Between& between,
-                       uint32_t* out) {
-    uint32_t mask = 0;
-    for (uint32_t k = 0; k < 4; ++k) mask |= (inside >> corner[k] & 1) << k;
-    if (mask == 0 || mask == 15) return out;
-    const auto add = [&out](uint32_t a, uint32_t b, uint32_t c) {
-      out[0] = a, out[1] = b, out[2] = c;
-      out += 3;
-    };
-    const auto on = [&](uint32_t j, uint32_t k) { return between(corner[j], corner[k]); };
-    for (uint32_t k = 0; k < 4; ++k) {
-      const auto& [a, b, c, d] = kOneFirst[k];
-      if (mask == 1U << a) add(on(a, b), on(a, c), on(a, d));
-      if (mask == (15U ^ 1U << a)) add(on(a, b), on(a, d), on(a, c));
-    }
-    // Even permutations with each pair first.
-    constexpr uint32_t kTwoFirst[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
-                                          {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};
-    for (const auto& [a, b, c, d] : kTwoFirst) {
-      if (mask != (1U << a | 1U << b)) continue;
-      const uint32_t quad[4] = {on(a, c), on(a, d), on(b, d), on(b, c)};
-      add(quad[0], quad[1], quad[2]);
-      add(quad[0], quad[2], quad[3]);
-    }
-    return out;
+  // Bit d - 1: the edge of direction d from the first corner of a cell has a vertex.
+  uint32_t crossed_edges(uint32_t inside) const {
+    return ((inside & 1) != 0 ? ~inside & kAllCorners : inside) >> 1 & cell_.directions;
   }
 
   Lattice lattice_;
+  const CellFaces& cell_;
   const Executor& executor_;
   size_t layers_;
   Vector<size_t> first_id_, first_face_;  // per slice
@@ -378,7 +333,7 @@ class Builder {
 
 Status iso_surface(const ImageObject& object, const LatticeValues& values, const Executor& executor,
                    Mesh& mesh, Vector<uint64_t>* voxel) {
-  Builder builder(object, values, executor);
+  Builder builder(object, values, tetrahedron_faces(), executor);
   if (Status s = builder.count(); !s.ok()) return s;
   builder.build(mesh, voxel);
   return {};
@@ -386,7 +341,7 @@ Status iso_surface(const ImageObject& object, const LatticeValues& values, const
 
 Status iso_crossings(const ImageObject& object, const LatticeValues& values, int64_t least,
                      const Executor& executor, Crossings& crossings) {
-  Builder builder(object, values, executor);
+  Builder builder(object, values, tetrahedron_faces(), executor);
   if (Status s = builder.count(); !s.ok()) return s;
   crossings = builder.crossings(least);
   return {};

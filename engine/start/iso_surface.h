@@ -1,9 +1,4 @@
 // The iso-surface of an image, of which regular_iso_surface.h makes what surfaces start from.
-//
-// Marching tetrahedra on the six of Kuhn and Freudenthal around each cell's main diagonal. They are
-// the same from cell to cell, so the surface is that of a continuous function, linear in each:
-// closed and a manifold whatever the voxels are. Marching cubes needs a table of ambiguous cases
-// for that.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -21,10 +16,9 @@ namespace plc {
 // degenerates and rounding has room. 0 would give faces of zero area, 1/2 a surface of steps.
 inline constexpr double kIsoMargin = 0.1;
 
-// Replaces what is in the mesh, but for delta, by the closed surface around the voxels of
-// the object. Faces are outward. What
-// reaches the image's border is closed half a voxel beyond it. Voxels that touch by a corner are
-// connected along (1,1,1), (1,1,0), (1,0,1), (0,1,1) and the axes, not along the other diagonals.
+// Replaces what is in the mesh, but for delta, by the closed surface around the voxels of the
+// object, by marching tetrahedra (cell_faces.h). Faces are outward. What reaches the image's border
+// is closed half a voxel beyond it.
 //
 // Positions are of mesh space: voxel coordinate c = scale p + offset, scale > 0. Each image.dims >=
 // 1. Ids in scan order of the voxels, 7 edges to a voxel; memory O(vertices + a few slices per
