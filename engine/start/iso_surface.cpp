@@ -341,7 +341,7 @@ Status iso_surface(const ImageObject& object, const LatticeValues& values, const
 
 Status iso_crossings(const ImageObject& object, const LatticeValues& values, int64_t least,
                      const Executor& executor, Crossings& crossings) {
-  Builder builder(object, values, tetrahedron_faces(), executor);
+  Builder builder(object, values, cube_faces(), executor);
   if (Status s = builder.count(); !s.ok()) return s;
   crossings = builder.crossings(least);
   return {};

@@ -25,12 +25,10 @@ namespace plc {
 
 namespace {
 
-// In sizes: how near to one that stays others are merged into it. The first is a part of the way:
-// it is faster, and what meets when it is thinned out further stays as fine as that.
-constexpr float kReaches[] = {0.63F, 1.08F};
-constexpr uint8_t kSteps = std::size(kReaches);
-// What meets stays finer, and is merged anew, so many times; then its block stays as it was, or all
-// of the surface, where what meets was merged in different blocks.
+// In sizes: how near to one that stays others are merged into it.
+constexpr float kReach = 1.2F;
+// What meets stays as it was, and the rest is merged anew, so many times; then its block stays as
+// it was, or all of the surface, where what meets was merged in different blocks.
 constexpr int kTries = 8;
 // Side of a block, in delta, and by how much of it the grid of each stage is moved: what is at the
 // border of a block in one of them is within a block in another, but for some points.
@@ -47,11 +45,12 @@ uint32_t left_of(const Vector<uint32_t>& into, uint32_t v) {
 // Merges vertices, in stages.
 class Thinning {
  public:
-  // abc: of the surface's faces. steps: of each vertex, how many it takes part in.
-  Thinning(Buffer<uint32_t>&& abc, const Buffer<SizedPlace>& places, Vector<uint8_t>& steps,
+  // abc: of the surface's faces. stays: of each vertex, whether it neither is merged nor others
+  // are into it.
+  Thinning(Buffer<uint32_t>&& abc, const Buffer<SizedPlace>& places, Vector<uint8_t>& stays,
            uint32_t most_neighbors, const Executor& executor)
       : places_(places),
-        steps_(steps),
+        stays_(stays),
         most_neighbors_(most_neighbors),
         executor_(executor),
         mesh_(std::move(abc), places.size(), executor),
@@ -97,7 +96,6 @@ class Thinning {
   struct Scratch {
     Ring ring;
     Vector<HalfEdges::Contraction> done;
-    std::array<size_t, kSteps> before_step{};  // of those: how many came before each step
     Vector<Face> faces, before;  // ascending by their first corners; what was listed last
     Vector<uint32_t> corners;    // of all faces
     BoxTree tree;
@@ -115,49 +113,36 @@ class Thinning {
   }
   bool has(uint32_t v, uint8_t flag) const { return (flags_[v] & flag) != 0; }
 
-  // Of two faces that meet one has changed: of what was merged into its corners something took part
-  // in a step, and does so no more. So this ends. Steps before that are as they were.
+  // Of two faces that meet one has changed: of what was merged into its corners something took
+  // part, and does so no more. So this ends.
   void thin_out(uint32_t block, Scratch& s) {
     s.faces.clear();
-    s.done.clear();
-    uint8_t from = 0;
     for (int i = 0;; ++i) {
-      for (uint8_t step = from; step < kSteps; ++step) {
-        s.before_step[step] = s.done.size();
-        merge(block, step, s);
+      s.done.clear();
+      for (const uint32_t v : grid_->vertices(block)) {
+        while (merges(v) && merge_one(v, s)) {
+        }
       }
       if (s.done.empty()) return;
       list_faces(block, i == 0, s);
       find_meeting(block, s);
       if (s.meeting.empty()) return;
-      from = i < kTries ? kSteps : 0;
       for (const uint32_t v : grid_->vertices(block)) {
         const bool meets =
             std::binary_search(s.meeting.begin(), s.meeting.end(), left_of(into_, v));
-        if (meets && steps_[v] > 0) from = std::min(from, --steps_[v]);
-        if (i >= kTries) steps_[v] = 0;
+        if (meets || i >= kTries) stays_[v] = 1;
       }
-      undo(block, s.before_step[from], s);
+      undo(block, s);
     }
   }
-  // All but the first contractions.
-  void undo(uint32_t block, size_t first, Scratch& s) {
-    for (; s.done.size() > first; s.done.pop_back()) {
+  void undo(uint32_t block, Scratch& s) {
+    for (; !s.done.empty(); s.done.pop_back()) {
       mesh_.undo(s.done.back());
       into_[s.done.back().w] = s.done.back().w;
     }
     for (const uint32_t v : grid_->vertices(block)) flags_[v] &= kAtBorder;
-    for (const HalfEdges::Contraction& c : s.done) flags_[c.v] |= kGrown;
   }
-  void merge(uint32_t block, uint8_t step, Scratch& s) {
-    for (const uint32_t v : grid_->vertices(block)) {
-      while (merges(v, step) && merge_one(v, step, s)) {
-      }
-    }
-  }
-  bool merges(uint32_t v, uint8_t step) const {
-    return mesh_.alive(v) && !has(v, kAtBorder) && steps_[v] > step;
-  }
+  bool merges(uint32_t v) const { return mesh_.alive(v) && !has(v, kAtBorder) && stays_[v] == 0; }
   // The neighbours of v, that of mesh_.out(v) in front.
   void list_ring(uint32_t v, Ring& ring) const {
     ring.clear();
@@ -165,11 +150,11 @@ class Thinning {
   }
   // Merges the first neighbour into v that may be. All neighbours are of the block: v is not at its
   // border.
-  bool merge_one(uint32_t v, uint8_t step, Scratch& s) {
+  bool merge_one(uint32_t v, Scratch& s) {
     Ring& ring = s.ring;
     list_ring(v, ring);
     for (const uint32_t w : ring) flags_[w] |= kInRing;
-    const uint32_t h = first_to_merge(v, step, ring);
+    const uint32_t h = first_to_merge(v, ring);
     for (const uint32_t w : ring) flags_[w] &= static_cast<uint8_t>(~kInRing);
     if (h == HalfEdges::kNone) return false;
     into_[mesh_.to(h)] = v;
@@ -177,11 +162,11 @@ class Thinning {
     s.done.push_back(mesh_.contract(h));
     return true;
   }
-  uint32_t first_to_merge(uint32_t v, uint8_t step, const Ring& ring) const {
-    const float reach = kReaches[step] * places_[v].size;
+  uint32_t first_to_merge(uint32_t v, const Ring& ring) const {
+    const float reach = kReach * places_[v].size;
     uint32_t h = mesh_.out(v);
     for (const uint32_t w : ring) {
-      if (merges(w, step) && squared(places_[w].at - places_[v].at) < reach * reach &&
+      if (merges(w) && squared(places_[w].at - places_[v].at) < reach * reach &&
           may_contract(h, ring.size()) && keeps_shape(h)) {
         return h;
       }
@@ -342,7 +327,7 @@ class Thinning {
 
   const Buffer<SizedPlace>& places_;
   const ThinningGrid* grid_ = nullptr;  // of the stage
-  Vector<uint8_t>& steps_;
+  Vector<uint8_t>& stays_;
   uint32_t most_neighbors_;
   const Executor& executor_;
   HalfEdges mesh_;
@@ -407,15 +392,15 @@ struct Merged {
 };
 
 // Makes the mesh what is left of the surface. Of that nothing else is kept: it takes more than the
-// mesh does. steps: as of Thinning; all where it is empty.
+// mesh does. stays: as of Thinning; none where it is empty.
 Status thin_out_once(const MakeCrossings& make, const Schedule& schedule, const GoOn& go_on,
-                     Mesh& mesh, Vector<uint8_t>& steps, Merged& merged) {
+                     Mesh& mesh, Vector<uint8_t>& stays, Merged& merged) {
   Crossings surface;
   if (Status s = make(surface); !s.ok()) return s;
   const Buffer<SizedPlace> places = places_of(surface.xyz, mesh, schedule);
   surface.xyz = Buffer<float>();
-  if (steps.empty()) steps.assign(places.size(), kSteps);
-  Thinning thinning(std::move(surface.abc), places, steps, mesh.most_neighbors, schedule);
+  if (stays.empty()) stays.assign(places.size(), 0);
+  Thinning thinning(std::move(surface.abc), places, stays, mesh.most_neighbors, schedule);
   const Box3 bounds = bounds_of(places);
   const float side = kSide * static_cast<float>(mesh.delta);
   for (const float shift : kShifts) {
@@ -431,20 +416,19 @@ Status thin_out_once(const MakeCrossings& make, const Schedule& schedule, const 
 
 Status thin_out(const MakeCrossings& make, const Schedule& schedule, const GoOn& go_on,
                 Mesh& mesh) {
-  Vector<uint8_t> steps;
+  Vector<uint8_t> stays;
   for (int i = 0;; ++i) {
     Merged merged;
-    if (Status s = thin_out_once(make, schedule, go_on, mesh, steps, merged); !s.ok()) return s;
-    // What meets was merged in different blocks. It stays finer, as what meets in a block.
+    if (Status s = thin_out_once(make, schedule, go_on, mesh, stays, merged); !s.ok()) return s;
+    // What meets was merged in different blocks. It stays as it was, as what meets in a block.
     const auto meeting = meeting_faces(mesh, schedule);
     if (meeting.empty()) return {};
-    Vector<uint8_t> meets(steps.size(), 0);
+    Vector<uint8_t> meets(stays.size(), 0);
     for (const auto& face : meeting) {
       for (const uint32_t v : face) meets[merged.ids[v]] = 1;
     }
-    for (uint32_t v = 0; v < steps.size(); ++v) {
-      if (i >= kTries) steps[v] = 0;
-      if (meets[left_of(merged.into, v)] != 0 && steps[v] > 0) --steps[v];
+    for (uint32_t v = 0; v < stays.size(); ++v) {
+      if (i >= kTries || meets[left_of(merged.into, v)] != 0) stays[v] = 1;
     }
   }
 }

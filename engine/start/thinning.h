@@ -15,8 +15,8 @@ namespace plc {
 // as long as kMeanEdge has them; all are where they were. What is nearer to one that stays is
 // merged into it, where the surface stays a manifold, no edge violates (2) and no face turns by
 // more than 60 degrees. No guard is asked, which is what makes it faster than conform.h: faces that
-// meet are looked for when a block of the surface is done, and what was merged around them stays
-// finer.
+// meet are looked for when a block of the surface is done, and where there are any nothing is
+// merged at their corners.
 //
 // The blocks of a grid are thinned out at once, each by itself, then those of another grid, in
 // which lies within a block what was at a border; so the same bits for any executor.

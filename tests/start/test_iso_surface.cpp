@@ -52,6 +52,26 @@ plc::MeshCheck checked(const Mesh& mesh) {
   return check;
 }
 
+plc::Crossings crossings_of(const Volume& v, float iso, bool inside_above = true, int64_t least = 0,
+                            int threads = 1) {
+  const plc::ImageView view = view_of(v);
+  const plc::ImageObject object{view, iso, inside_above};
+  plc::Crossings crossings;
+  REQUIRE(
+      plc::iso_crossings(object, plc::values_of(object), least, plc::Schedule(threads), crossings)
+          .ok());
+  return crossings;
+}
+
+plc::MeshCheck checked(const plc::Crossings& crossings) {
+  const std::vector<double> xyz(crossings.xyz.begin(), crossings.xyz.end());
+  plc::MeshCheck check;
+  REQUIRE(plc::check_mesh(plc::arrays_of(xyz, crossings.abc), samples::kSerial, check).ok());
+  CHECK(check.valid == 1);
+  CHECK(check.isolated_vertices == 0);
+  return check;
+}
+
 Volume constant(std::array<int64_t, 3> dims, float value) {
   Volume v = samples::empty_volume(dims);
   v.values.assign(static_cast<size_t>(dims[0] * dims[1] * dims[2]), value);
@@ -107,6 +127,7 @@ TEST_CASE("noise of every density has a valid iso-surface", "[iso_surface]") {
         const plc::MeshCheck check = checked(mesh);
         CHECK(check.edge_min > 0.05);
         CHECK(check.edge_max < 2);
+        CHECK(checked(crossings_of(v, iso, above)).edge_min > 0.05);
       }
     }
   }
@@ -122,11 +143,13 @@ TEST_CASE("a checkerboard, and every cell of eight voxels, has a valid iso-surfa
   Mesh mesh;
   extract(mesh, v, 0.5F);
   checked(mesh);
+  checked(crossings_of(v, 0.5F));
   for (uint32_t inside = 1; inside < 256; ++inside) {
     Volume cell = constant({2, 2, 2}, 0);
     for (uint32_t c = 0; c < 8; ++c) cell.values[c] = (inside >> c & 1) != 0 ? 1.0F : 0.0F;
     extract(mesh, cell, 0.5F);
     checked(mesh);
+    checked(crossings_of(cell, 0.5F));
   }
 }
 
@@ -228,18 +251,8 @@ TEST_CASE("parts and cavities of too few voxels are left out, but for the larges
   fill({2, 10, 10}, {26, 1, 1}, 1);
   fill({2, 13, 13}, {27, 1, 1}, 1);
   fill({13, 0, 0}, {27, 1, 1}, 1);
-  const plc::ImageView view = view_of(v);
-  const plc::ImageObject object{view, 0.5F, true};
   const auto components = [&](int64_t least) {
-    plc::Crossings crossings;
-    REQUIRE(plc::iso_crossings(object, plc::values_of(object), least, samples::kSerial, crossings)
-                .ok());
-    const std::vector<double> xyz(crossings.xyz.begin(), crossings.xyz.end());
-    plc::MeshCheck check;
-    REQUIRE(plc::check_mesh(plc::arrays_of(xyz, crossings.abc), samples::kSerial, check).ok());
-    CHECK(check.valid == 1);
-    CHECK(check.isolated_vertices == 0);
-    return check.measures.components;
+    return checked(crossings_of(v, 0.5F, true, least)).measures.components;
   };
   CHECK(components(0) == 6);
   CHECK(components(2) == 5);   // without the voxel in the cavity
@@ -260,13 +273,7 @@ TEST_CASE("parts whose voxels hang together by edges alone are left out, with th
     }
   };
   const auto components = [&](int64_t least) {
-    const plc::ImageView view = view_of(v);
-    const plc::ImageObject object{view, 0.5F, true};
-    plc::Crossings crossings;
-    REQUIRE(plc::iso_crossings(object, plc::values_of(object), least, samples::kSerial, crossings)
-                .ok());
-    const std::vector<double> xyz(crossings.xyz.begin(), crossings.xyz.end());
-    return plc::surface_measures(plc::arrays_of(xyz, crossings.abc), samples::kSerial).components;
+    return checked(crossings_of(v, 0.5F, true, least)).measures.components;
   };
   // A slab, the largest; pairs of voxels along a diagonal, 36 in all.
   fill({0, 0, 28}, {40, 40, 40}, 1);
@@ -304,19 +311,10 @@ TEST_CASE("of many parts in a row each is left out for itself, by any number of 
     const bool inside = all_within(0, 1) || (all_within(2, 10) && !all_within(4, cavity));
     v.values[i] = inside ? 1.0F : 0.0F;
   }
-  const plc::ImageView view = view_of(v);
-  const plc::ImageObject object{view, 0.5F, true};
   std::vector<std::vector<uint32_t>> faces;
   for (const int threads : {1, 3}) {
-    const plc::Schedule schedule(threads);
-    plc::Crossings crossings;
-    REQUIRE(plc::iso_crossings(object, plc::values_of(object), 27, schedule, crossings).ok());
-    const std::vector<double> xyz(crossings.xyz.begin(), crossings.xyz.end());
-    plc::MeshCheck check;
-    REQUIRE(plc::check_mesh(plc::arrays_of(xyz, crossings.abc), schedule, check).ok());
-    CHECK(check.valid == 1);
-    CHECK(check.isolated_vertices == 0);
-    CHECK(check.measures.components == 125 + 63);
+    const plc::Crossings crossings = crossings_of(v, 0.5F, true, 27, threads);
+    CHECK(checked(crossings).measures.components == 125 + 63);
     faces.emplace_back(crossings.abc.begin(), crossings.abc.end());
   }
   CHECK(faces[0] == faces[1]);

@@ -1,7 +1,9 @@
 #include "engine/start/regular_iso_surface.h"
 
 #include <catch2/catch.hpp>
+#include <utility>
 
+#include "engine/mesh/face_rings.h"
 #include "kernels/image_value.h"
 #include "tests/samples/sample_runs.h"
 #include "tests/samples/sample_surfaces.h"
@@ -21,8 +23,9 @@ plc::ImageView view_of(const samples::Volume& volume) {
   return view;
 }
 
+// By tetrahedra, and what starts from that; by cubes, and what an adaptive mesh starts from.
 struct Both {
-  Mesh plain, regular, adaptive;
+  Mesh plain, regular, cubes, adaptive;
   int asked = 0;  // of the adaptive one: whether to go on
 };
 
@@ -38,6 +41,11 @@ Both surfaces_of(const samples::Volume& volume, float iso, int threads = 1) {
   Both both;
   REQUIRE(plc::iso_surface({view, iso, true}, values, schedule, both.plain).ok());
   REQUIRE(plc::regular_iso_surface({view, iso, true}, values, schedule, both.regular).ok());
+  plc::Crossings crossings;
+  REQUIRE(plc::iso_crossings({view, iso, true}, values, 0, schedule, crossings).ok());
+  const size_t count = crossings.xyz.size() / 3;
+  const plc::FaceRings rings(crossings.abc.data(), crossings.abc.size() / 3, count, schedule);
+  plc::fill_from_rings(both.cubes, crossings.xyz.data(), count, rings);
   plc::Sizing sizing;
   REQUIRE(sizing.field.build(view, iso, 1, {}, schedule).ok());
   both.adaptive.sizing = &sizing;
@@ -97,15 +105,18 @@ TEST_CASE("whatever the voxels are, the topology stays and nothing meets",
     samples::add_noise(volume, seed % 2 == 0 ? 0.5 : 0.05, seed + 10);
     const Both both = surfaces_of(volume, 0.5F), again = surfaces_of(volume, 0.5F, 3);
     CAPTURE(seed);
-    for (const Mesh* mesh : {&both.regular, &both.adaptive}) {
+    for (const auto& [mesh, of] :
+         {std::pair{&both.regular, &both.plain}, std::pair{&both.adaptive, &both.cubes}}) {
       CHECK(plc::broken_invariant(*mesh) == "");
       CHECK(samples::meeting_count(*mesh) == 0);
-      CHECK(samples::euler(*mesh) == samples::euler(both.plain));
-      CHECK(samples::component_count(*mesh) == samples::component_count(both.plain));
+      CHECK(samples::euler(*mesh) == samples::euler(*of));
+      CHECK(samples::component_count(*mesh) == samples::component_count(*of));
     }
+    CHECK(samples::meeting_count(both.cubes) == 0);
+    CHECK(both.cubes.vertex_count() * 2 < both.plain.vertex_count());
     CHECK(both.regular.vertex_count() * 2 < both.plain.vertex_count());
     CHECK(plc::state_hash(both.regular) == plc::state_hash(again.regular));
-    CHECK(both.adaptive.vertex_count() * 1.5 < both.plain.vertex_count());
+    CHECK(both.adaptive.vertex_count() < 0.9 * both.cubes.vertex_count());
     CHECK(plc::state_hash(both.adaptive) == plc::state_hash(again.adaptive));
   }
 }
@@ -118,9 +129,9 @@ TEST_CASE("blocks that are thinned out at once leave one surface of their sizes"
   const Both both = surfaces_of(volume, 0.5F), again = surfaces_of(volume, 0.5F, 3);
   CHECK(plc::broken_invariant(both.adaptive) == "");
   CHECK(samples::meeting_count(both.adaptive) == 0);
-  CHECK(samples::euler(both.adaptive) == samples::euler(both.plain));
-  CHECK(samples::component_count(both.adaptive) == samples::component_count(both.plain));
-  CHECK(both.adaptive.vertex_count() * 4.4 < both.plain.vertex_count());
+  CHECK(samples::euler(both.adaptive) == samples::euler(both.cubes));
+  CHECK(samples::component_count(both.adaptive) == samples::component_count(both.cubes));
+  CHECK(both.adaptive.vertex_count() < 0.6 * both.cubes.vertex_count());
   // Once after the crossings and after each of three grids: nothing had to be done anew as a whole.
   CHECK(both.asked == 4);
   CHECK(plc::state_hash(both.adaptive) == plc::state_hash(again.adaptive));
@@ -140,5 +151,5 @@ TEST_CASE("a plate of one voxel, and a single one, keep two sides", "[regular_is
   CHECK(samples::euler(both.regular) == 4);
   CHECK(samples::volume(both.regular) > 0.3 * samples::volume(both.plain));
   CHECK(samples::euler(both.adaptive) == 4);
-  CHECK(samples::volume(both.adaptive) > 0.7 * samples::volume(both.plain));
+  CHECK(samples::volume(both.adaptive) > 0.7 * samples::volume(both.cubes));
 }
