@@ -376,6 +376,9 @@ TEST_CASE("an adaptive mesh starts from the iso-surface where the image is not m
     noise.values[i] = static_cast<float>(i * 2654435761U % 1000) / 1000;
   }
   CHECK(start_of(as_is, noise, 0) == bubble);
+  // Noise in a fifth of it: about 12 % of all voxels.
+  std::fill(noise.values.begin() + 12 * 60 * 60, noise.values.end(), 0.0F);
+  CHECK(start_of(as_is, noise, 0) == iso);
 }
 
 TEST_CASE("the engine's own defaults are those that are shipped", "[parameters]") {
