@@ -147,6 +147,11 @@ inline constexpr float kAnnularRetreat = 0.55F;
 // A freshly cut pair is exempt from axial transformations for this long, while it does not
 // approach. A blind exemption lets sheets cross.
 inline constexpr uint32_t kCutExemption = 5;
+// In an adaptive mesh on the full image nothing is cut or joined by (3) before this iteration: it
+// may start from the iso-surface, where sheets are as near as the image has them, and forces part
+// what they can. From the first iteration on, and before it, thin parts are torn farther: of eight
+// images the mean distance to what comes out is larger by up to 5 %, and more sites freeze.
+inline constexpr uint32_t kFirstPairs = 9;
 
 // The embedding guard looks for faces with a corner within this of the new ones, in delta: a point
 // of a triangle is within 1 / sqrt 3 of its longest edge of a corner, so that faces with edges up

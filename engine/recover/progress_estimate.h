@@ -25,9 +25,10 @@ class ProgressEstimate {
   };
 
   void start_level();
-  // What making the surface that the level starts from has counted. Until then at_start() tells how
-  // much of everything is done, after so many parts of it, where this is the only level.
-  void add_start(const OperationCounts& level);
+  // What making the surface that the level starts from has counted, and its vertices. Until then
+  // at_start() tells how much of everything is done, after so many parts of it, where this is the
+  // only level.
+  void add_start(const OperationCounts& level, uint32_t vertices);
   static double at_start(int parts);
   void start_round();
   // An iteration: what the level has counted up to now, its energy in epsilon. Returns how much of

@@ -142,7 +142,7 @@ Status Recovery::start_level() {
   }
   if (mesh_.vertex_count() == 0 && !mesh_.is_patch()) return leave_level();
   estimate_.start_level();
-  if (fresh) estimate_.add_start(record().operations);
+  if (fresh) estimate_.add_start(record().operations, mesh_.vertex_count());
   if (Status s = adapt(fresh && spec_.start.conforms()); !s.ok()) return s;
   if (Status s = build_gradient_image(); !s.ok()) return s;
   if (!fresh || mesh_.is_patch()) {

@@ -166,7 +166,12 @@ Status settle(Mesh& mesh, const Executor& executor, Detection& detection, Resolu
     const int64_t before = counts.transformations();
     // Nothing freezes here: the passes end where one changes nothing, or there are too many.
     std::fill(mesh.turns.begin(), mesh.turns.end(), uint8_t{0});
-    detection.search_near_all();
+    if (Resolution::asks_for_pairs(mesh, kIteration)) {
+      detection.search_near_all();
+    } else {
+      detection.list_all();
+      detection.update_hash();
+    }
     resolution.run(kIteration, {}, counts);
     if (Status s = ask(go_on); !s.ok()) return s;
     const int64_t done = counts.transformations() - before;

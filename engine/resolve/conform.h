@@ -22,7 +22,8 @@ inline constexpr int kConformPasses = 20;
 //      times that and so on. At the full delta at once the guards would look at the faces of a
 //      hundred vertices for every deletion;
 //   3. figure 9 over all vertices until a pass changes nothing, or in an adaptive mesh, whose sizes
-//      are kept while it moves, hardly anything.
+//      are kept while it moves, hardly anything, and on the full image without (3), which is not
+//      asked for as early there (kFirstPairs).
 //
 // On entry the mesh is closed, oriented and embedded (mesh_import.h, iso_surface.h), and meets none
 // of its obstacles, which it does not on return either; delta > 0 in mesh units. On return it is

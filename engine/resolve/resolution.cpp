@@ -48,6 +48,10 @@ Resolution::Resolution(Mesh& mesh, const Executor& executor, Detection& detectio
       detection_(detection),
       trials_(mesh, detection.hash(), executor) {}
 
+bool Resolution::asks_for_pairs(const Mesh& mesh, uint32_t iteration) {
+  return mesh.sizing == nullptr || !mesh.sizing->full_image || iteration >= kFirstPairs;
+}
+
 void Resolution::restart() {
   stamp_.clear();
   stamps_ = round_ = 0;
@@ -75,9 +79,16 @@ void Resolution::run(uint32_t iteration, const Vector<uint32_t>& moved_since,
   counts.tetrahedron += tiny_.delete_turned_over(mesh_, staying());
   stamp_.resize(mesh_.slots(), 0);
   queue_violated_edges();
+  const bool pairs = asks_for_pairs(mesh_, iteration);
   for (int pass = 0; pass < kMaxAxialPasses; ++pass) {
     resolve_edges(counts);
-    if (!resolve_pairs(pass == 0, counts)) break;
+    if (!pairs || !resolve_pairs(pass == 0, counts)) break;
+  }
+  if (!pairs) {
+    for (const uint32_t v : pair_queue_) {
+      if (mesh_.alive(v)) mesh_.wake(v);
+    }
+    pair_queue_.clear();
   }
   // What the limits left over is checked again in the next iteration.
   for (const auto* queue : {&edge_queue_, &pair_queue_}) {

@@ -22,6 +22,8 @@ class Resolution {
   // detection: of the same mesh; it outlives this.
   Resolution(Mesh& mesh, const Executor& executor, Detection& detection);
 
+  // Whether (3) is asked for in an iteration (kFirstPairs).
+  static bool asks_for_pairs(const Mesh& mesh, uint32_t iteration);
   // Everything that is known about single vertices is forgotten: new ids, new level.
   void restart();
   // What the next pass knows of those before it.
