@@ -82,14 +82,14 @@ class Borders {
  private:
   static constexpr uint8_t kNone = 255;
 
-  // Around the corners of a side that are outside: from where these begin to where they end.
+  // Around the corners of a side that are inside: from where these begin to where they end.
   void add(const std::array<uint32_t, 4>& side, uint32_t inside) {
     for (size_t k = 0; k < 4; ++k) {
-      const uint32_t last = side[k], first_outside = side[(k + 1) % 4];
-      if (!has(inside, last) || has(inside, first_outside)) continue;
+      const uint32_t last = side[k], first_inside = side[(k + 1) % 4];
+      if (has(inside, last) || !has(inside, first_inside)) continue;
       size_t j = k + 1;
-      while (!has(inside, side[(j + 1) % 4])) ++j;
-      next_[vertex_between(side[j % 4], side[(j + 1) % 4])] = vertex_between(last, first_outside);
+      while (has(inside, side[(j + 1) % 4])) ++j;
+      next_[vertex_between(last, first_inside)] = vertex_between(side[j % 4], side[(j + 1) % 4]);
     }
   }
 

@@ -13,7 +13,6 @@
 #include "engine/base/blocks.h"
 #include "engine/mesh/face_rings.h"
 #include "engine/start/cell_faces.h"
-#include "engine/start/joined_voxels.h"
 #include "engine/start/small_parts.h"
 #include "kernels/image_value.h"
 #include "pyramid/memory.h"
@@ -70,23 +69,6 @@ class Lattice {
                                 static_cast<double>(image_.scale[a]));
     }
     return {p[0], p[1], p[2]};
-  }
-
-  // Whether a voxel is there and inside.
-  bool has(const Voxel& v) const {
-    return is_within(image_.dims, v) && object_.has(values_.at(v[0], v[1], v[2]));
-  }
-  // That voxel of the two beside a crossing that is inside.
-  Voxel inside_of(const float* crossing) const {
-    Voxel low, high;
-    for (size_t a = 0; a < 3; ++a) {
-      // Where the edge leads along the axis the crossing is kIsoMargin from both at least.
-      const auto c = static_cast<double>(image_.scale[a]) * static_cast<double>(crossing[a]) +
-                     static_cast<double>(image_.offset[a]);
-      low[a] = static_cast<int32_t>(std::floor(c + kIsoMargin / 2));
-      high[a] = static_cast<int32_t>(std::ceil(c - kIsoMargin / 2));
-    }
-    return has(low) ? low : high;
   }
 
  private:
@@ -221,13 +203,7 @@ class Builder {
   Crossings crossings(int64_t least) {
     if (least > 0) points_.resize(vertex_count());
     march_all();
-    if (least > 0) {
-      const auto is_joined_at = [&](uint32_t v) {
-        return is_joined(lattice_.inside_of(&all_.xyz[3 * size_t{v}]), static_cast<size_t>(least),
-                         [&](const Voxel& voxel) { return lattice_.has(voxel); });
-      };
-      leave_out_small_parts(points_, least, is_joined_at, executor_, all_);
-    }
+    if (least > 0) leave_out_small_parts(points_, least, executor_, all_);
     return std::move(all_);
   }
 

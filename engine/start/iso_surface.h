@@ -52,8 +52,7 @@ struct Crossings {
 };
 
 // Components that enclose fewer than `least` voxels - parts of the object with all that is in them,
-// and cavities - are left out, and parts of which no `least` voxels are joined by faces
-// (joined_voxels.h), but for those that enclose most.
+// and cavities - are left out, but for those that enclose most.
 Status iso_crossings(const ImageObject& object, const LatticeValues& values, int64_t least,
                      const Executor& executor, Crossings& crossings);
 

@@ -40,19 +40,11 @@ class SmallParts {
   }
 
   // By vertex, what it is in what is kept: how many were kept before it, or kNone.
-  Buffer<uint32_t> numbers(int64_t least, const std::function<bool(uint32_t v)>& is_joined) {
+  Buffer<uint32_t> numbers(int64_t least) {
     least = std::min(least, most_);
-    const auto is_large = [&](uint32_t v) { return std::abs(enclosed(v)) >= least; };
-    DisjointSets solids = joined_rows();
-    Buffer<uint8_t> joined(points_.size());  // by what stands for the solid
-    run_blocks(executor_, points_.size(), kBlock, [&](size_t, size_t begin, size_t end) {
-      for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
-        uint8_t& of_solid = joined[solids.find(v)];
-        if (read_mark(of_solid) != 0 || !is_large(v)) continue;
-        if (enclosed(v) == most_ || is_joined(v)) set_mark(of_solid, 1);
-      }
-    });
-    const auto is_kept = [&](uint32_t v) { return is_large(v) && joined[solids.find(v)] != 0; };
+    const auto is_kept = [&](uint32_t v) {
+      return std::abs(enclosed_[components_.find(v)]) >= least;
+    };
     Buffer<uint32_t> number;
     number.resize_uninitialized(points_.size());
     Vector<uint32_t> first(block_count(points_.size(), kBlock) + 1, 0);
@@ -82,22 +74,6 @@ class SmallParts {
     });
     return sets;
   }
-  // The walls of cavities hang together with the surface around them: a row that enters the object
-  // at one of them leaves it at another.
-  DisjointSets joined_rows() const {
-    DisjointSets solids = components_;
-    run_blocks(executor_, points_.size(), kBlock, [&](size_t, size_t begin, size_t end) {
-      auto entered = static_cast<uint32_t>(begin);
-      while (entered > 0 && points_[entered] >= 0) --entered;
-      for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
-        if (points_[v] < 0) entered = v;
-        if (points_[v] > 0) solids.join(entered, v);
-      }
-    });
-    return solids;
-  }
-  int64_t enclosed(uint32_t v) { return enclosed_[components_.find(v)]; }
-
   const Buffer<int32_t>& points_;
   const Executor& executor_;
   DisjointSets components_;
@@ -130,10 +106,9 @@ void keep_triples(const Executor& executor, const Keep& keep, Buffer<T>& values)
 
 }  // namespace
 
-void leave_out_small_parts(const Buffer<int32_t>& points, int64_t least,
-                           const std::function<bool(uint32_t v)>& is_joined,
-                           const Executor& executor, Crossings& all) {
-  const Buffer<uint32_t> number = SmallParts(all, points, executor).numbers(least, is_joined);
+void leave_out_small_parts(const Buffer<int32_t>& points, int64_t least, const Executor& executor,
+                           Crossings& all) {
+  const Buffer<uint32_t> number = SmallParts(all, points, executor).numbers(least);
   keep_triples(
       executor,
       [&](size_t, uint32_t* abc) {

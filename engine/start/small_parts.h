@@ -2,7 +2,6 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 
 #include "engine/start/iso_surface.h"
 #include "pyramid/buffer.h"
@@ -12,11 +11,9 @@ namespace plc {
 
 // points: of vertices on edges along x, as those of a row follow each other, the points of the
 // lattice up to there in its row, less where the surface enters the object; 0 of others. The sum
-// over a component is how many points it encloses. is_joined(v): whether `least` voxels are joined
-// by faces of which the one inside at v is one. What iso_crossings() says of `least`; what stays
-// keeps its order. The same for any executor, by whose tasks is_joined() is called.
-void leave_out_small_parts(const Buffer<int32_t>& points, int64_t least,
-                           const std::function<bool(uint32_t v)>& is_joined,
-                           const Executor& executor, Crossings& all);
+// over a component is how many points it encloses. What iso_crossings() says of `least`; what stays
+// keeps its order. The same for any executor.
+void leave_out_small_parts(const Buffer<int32_t>& points, int64_t least, const Executor& executor,
+                           Crossings& all);
 
 }  // namespace plc

@@ -26,7 +26,7 @@ namespace plc {
 namespace {
 
 // In sizes: how near to one that stays others are merged into it.
-constexpr float kReach = 1.22F;
+constexpr float kReach = 1.25F;
 // What meets stays as it was, and the rest is merged anew, so many times; then its block stays as
 // it was, or all of the surface, where what meets was merged in different blocks.
 constexpr int kTries = 8;
