@@ -364,7 +364,7 @@ typedef struct plc_parameters {
   /* the pyramid */
   int levels;       /* levels above I_0, the image; 0: direct; -1: 3, or fewer when that is small,
                        but 0 where init is PLC_INIT_AUTO, the mesh adaptive, late_bubbles 1, and of
-                       the image's voxels at most a 16th - 16,384 in small ones, 2^21 in large
+                       the image's voxels at most a fifth - 16,384 in small ones, 2^21 in large
                        ones, with a memory_limit one for 2,400 bytes of that - are the object's
                        and at its surface: in noise there are more */
   double reduction; /* rho, 1 < rho <= 2: how much longer voxels are from level to level */

@@ -29,7 +29,7 @@ struct CellFaces {
 // (1,0,1), (0,1,1) and the axes are connected. All seven directions.
 const CellFaces& tetrahedron_faces();
 
-// Marching cubes: vertices on the axes' directions alone, so less than half as many. Corners that
+// Marching cubes: vertices on the axes' directions alone, so a third as many. Corners that
 // touch along the axes are connected, and no others: where those inside are across from each other
 // on a side of the cell they are apart. The borders of the surface on the cell's sides are the same
 // from both cells of a side; each is filled with the fan of the smallest area that has no edge in a

@@ -44,7 +44,7 @@ LatticeValues values_of(const ImageObject& object);
 Status iso_surface(const ImageObject& object, const LatticeValues& values, const Executor& executor,
                    Mesh& mesh, Vector<uint64_t>* voxel = nullptr);
 
-// The surface by marching cubes (cell_faces.h), about 2 vertices per square voxel, without what
+// The surface by marching cubes (cell_faces.h), about 1.5 vertices per square voxel, without what
 // makes it a mesh of the engine's.
 struct Crossings {
   Buffer<float> xyz;     // three per vertex, in mesh space
