@@ -45,9 +45,10 @@ double largest(const std::vector<uint8_t>& vertices, const Vector3& n) {
 const std::vector<Vector3>& directions() {
   static const std::vector<Vector3> all = [] {
     std::vector<Vector3> some;
-    for (int i = 0; i < 125; ++i) {
-      const Vector3 n{i % 5 - 2.0, i / 5 % 5 - 2.0, i / 25 - 2.0};
-      if (i != 62) some.push_back(n);
+    for (const double x : {-2, -1, 0, 1, 2}) {
+      for (const double y : {-2, -1, 0, 1, 2}) {
+        for (const double z : {-2, -1, 0, 1, 2}) some.push_back({x, y, z});
+      }
     }
     return some;
   }();
