@@ -65,7 +65,7 @@ class Borders {
     }
   }
 
-  // Of a vertex of one that was not taken yet; empty where there is none.
+  // That of a vertex which was not taken yet; empty where there is none.
   Loop take() {
     Loop loop;
     for (uint8_t v = 0; v < next_.size() && loop.empty(); ++v) {
@@ -85,18 +85,19 @@ class Borders {
   // Around the corners of a side that are inside: from where these begin to where they end.
   void add(const std::array<uint32_t, 4>& side, uint32_t inside) {
     for (size_t k = 0; k < 4; ++k) {
-      const uint32_t last = side[k], first_inside = side[(k + 1) % 4];
-      if (has(inside, last) || !has(inside, first_inside)) continue;
+      const uint32_t last_outside = side[k], first_inside = side[(k + 1) % 4];
+      if (has(inside, last_outside) || !has(inside, first_inside)) continue;
       size_t j = k + 1;
       while (has(inside, side[(j + 1) % 4])) ++j;
-      next_[vertex_between(last, first_inside)] = vertex_between(side[j % 4], side[(j + 1) % 4]);
+      next_[vertex_between(last_outside, first_inside)] =
+          vertex_between(side[j % 4], side[(j + 1) % 4]);
     }
   }
 
   std::array<uint8_t, 64> next_{};
 };
 
-bool on_one_side(uint8_t v, uint8_t w) {
+bool share_side(uint8_t v, uint8_t w) {
   const uint32_t along = CellFaces::direction(v) | CellFaces::direction(w);
   const uint32_t differ = CellFaces::corner(v) ^ CellFaces::corner(w);
   return (~(along | differ) & 7U) != 0;
@@ -125,7 +126,7 @@ double area(const Face& face) {
 Faces fan_from(size_t first, const Loop& loop) {
   const auto at = [&](size_t k) { return loop[(first + k) % loop.size()]; };
   for (size_t k = 2; k + 1 < loop.size(); ++k) {
-    if (on_one_side(at(0), at(k))) return {};
+    if (share_side(at(0), at(k))) return {};
   }
   Faces faces;
   for (size_t k = 1; k + 1 < loop.size(); ++k) faces.push_back({at(0), at(k), at(k + 1)});

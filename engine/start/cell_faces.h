@@ -29,14 +29,13 @@ struct CellFaces {
 // (1,0,1), (0,1,1) and the axes are connected. All seven directions.
 const CellFaces& tetrahedron_faces();
 
-// Marching cubes: vertices on the axes' directions alone, so a third as many. Corners that
-// touch along the axes are connected, and no others: where those inside are across from each other
-// on a side of the cell they are apart. The borders of the surface on the cell's sides are the same
-// from both cells of a side; each is filled with the fan of the smallest area that has no edge in a
-// side but its border. No table of cases is at hand for which it was shown, so it is tested for
-// all: wherever vertices are on their edges, kIsoMargin from their ends at least, faces of a cell
-// meet in what they share and nothing else. So this surface, too, is closed, embedded and a
-// manifold whatever is inside.
+// Marching cubes: vertices on the axes' directions alone, so a third as many. Corners that touch
+// along the axes are connected, and no others: where those inside are across from each other on a
+// side of the cell they are apart. The borders of the surface on the cell's sides are the same from
+// both cells of a side; each is filled with the fan of the smallest area that has no edge in a side
+// but its border. test_cell_faces.cpp shows of every case that, wherever vertices are on their
+// edges, kIsoMargin from the ends at least, faces of a cell meet in what they share and in nothing
+// else. So this surface, too, is closed, embedded and a manifold whatever is inside.
 const CellFaces& cube_faces();
 
 }  // namespace plc

@@ -74,6 +74,7 @@ class SmallParts {
     });
     return sets;
   }
+
   const Buffer<int32_t>& points_;
   const Executor& executor_;
   DisjointSets components_;
