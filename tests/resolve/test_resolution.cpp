@@ -8,6 +8,7 @@
 #include "engine/mesh/state_hash.h"
 #include "pyramid/memory.h"
 #include "tests/samples/kernel_fixtures.h"
+#include "tests/samples/sample_sizing.h"
 #include "tests/samples/sample_surfaces.h"
 #include "tests/samples/sample_volumes.h"
 
@@ -124,6 +125,28 @@ TEST_CASE("parts that face each other too near are joined", "[resolution]") {
   CHECK(samples::component_count(mesh) == 1);
   CHECK(samples::euler(mesh) == expected_euler(4, counts));
   CHECK(samples::meeting_count(mesh) == 0);
+}
+
+TEST_CASE("parts of an adaptive mesh on the full image are joined from the ninth iteration on",
+          "[resolution]") {
+  samples::FullImage object(true);
+  plc::SizeSpec same;
+  same.finest = same.coarsest = 1;
+  REQUIRE(
+      object.sizing.field.build(object.sizing.object.image, 0.5F, kDelta, same, samples::kSerial)
+          .ok());
+  const auto axial = [&](bool full_image, uint32_t iteration) {
+    Mesh mesh;
+    samples::fill_mesh(mesh, spheres(0.2), kDelta);
+    object.sizing.full_image = full_image;
+    mesh.sizing = &object.sizing;
+    for (uint32_t v = 0; v < mesh.slots(); ++v) mesh.resize(v);
+    plc::measure_edges(mesh);
+    return resolve(mesh, samples::kSerial, iteration).axial;
+  };
+  CHECK(axial(true, plc::kFirstPairs - 1) == 0);
+  CHECK(axial(true, plc::kFirstPairs) >= 1);
+  CHECK(axial(false, 1) >= 1);
 }
 
 TEST_CASE("a narrow tube is cut", "[resolution]") {
