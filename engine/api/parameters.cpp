@@ -75,10 +75,10 @@ bool is_adaptive(const plc_parameters& p) {
 
 // Whether the surface starts from the image's iso-surface, near where it ends, and not from a
 // bubble around a coarse image. That takes about kBytes for each of the voxels at_surface, which
-// must be half of a limit at most. Of noise there is no end of them, of mere noise they are half of
-// all: what it joins is taken apart one by one. They are 1 to 4 % of most images, 7 % of soft
-// tissue in a head CT, 18 % of a CT of an aorta, which from there are done in half the time of
-// coarse to fine, and nearer. In small images they are many, too, but cost little.
+// must be half of a limit at most. Of noise there is no end of them, and what it joins is taken
+// apart one by one. They are 1 to 4 % of most images, 7 % of soft tissue in a head CT, 18 % of a CT
+// of an aorta, which from there are done in half the time of coarse to fine, and nearer. In small
+// images they are many, too, but cost little.
 bool starts_at_iso(const VolumeView& volume, uint64_t at_surface, int64_t memory_limit,
                    const plc_parameters& p) {
   constexpr double kPart = 0.2, kFew = 1 << 14, kMany = 1 << 21, kBytes = 1200;

@@ -84,19 +84,14 @@ void Resolution::run(uint32_t iteration, const Vector<uint32_t>& moved_since,
     resolve_edges(counts);
     if (!pairs || !resolve_pairs(pass == 0, counts)) break;
   }
-  if (!pairs) {
-    for (const uint32_t v : pair_queue_) {
-      if (mesh_.alive(v)) mesh_.wake(v);
-    }
-    pair_queue_.clear();
-  }
-  // What the limits left over is checked again in the next iteration.
+  // What the limits left over is checked again in the next iteration, and pairs that are not asked
+  // for yet.
   for (const auto* queue : {&edge_queue_, &pair_queue_}) {
     for (const uint32_t v : *queue) {
       if (mesh_.alive(v)) mesh_.wake(v);
     }
-    counts.deferred += static_cast<int64_t>(queue->size());
   }
+  counts.deferred += static_cast<int64_t>(edge_queue_.size() + (pairs ? pair_queue_.size() : 0));
   counts.tetrahedron += tiny_.update(mesh_, changed_, staying());
 }
 
