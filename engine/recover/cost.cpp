@@ -24,7 +24,7 @@ constexpr double kBytesToStart = 480;
 // directions.
 constexpr double kStairs = 1.5;
 // About so many voxels of a level are looked at, in slices at equal distances.
-constexpr double kLooked = 1 << 22;
+constexpr double kLooked = 1 << 20;
 
 // Counts the faces of voxels between the object and what is not, by the axis that they are
 // perpendicular to: those within slice z, and those between it and the next slice.
