@@ -355,7 +355,10 @@ typedef struct plc_parameters {
   int inside_below;                 /* 0: the object is where the image is >= iso; 1: <= iso */
   double level_iso[PLC_MAX_LEVELS]; /* pi_I per level, coarse to fine, in the image's units;
                                        since 0.3: before, I_0 came first */
-  int level_iso_count;              /* 0: derived; else levels + 1 */
+  int level_iso_count;              /* 0: derived; else levels + 1. Coarse levels have values at
+                                       which they show 95 % of the object of I_0, but where an
+                                       adaptive mesh starts on a noisy image (levels) the finest
+                                       of them has that of I_0 */
   double window_low, window_high;   /* image units mapped to 0 and 1; NAN: derived */
   double pad_value; /* what surrounds the image, not on the object's side of any iso-value (but for
                        PLC_FORCE_GRADIENT); NAN: the outside end of window */
@@ -366,7 +369,8 @@ typedef struct plc_parameters {
                        but 0 where init is PLC_INIT_AUTO, the mesh adaptive, late_bubbles 1, and of
                        the image's voxels at most a fifth - 16,384 in small ones, 2^21 in large
                        ones, with a memory_limit one for 2,400 bytes of that - are the object's
-                       and at its surface: in noise there are more */
+                       and at its surface, and noise moves that by no more than 5/3 of a voxel,
+                       standard deviation: in more, a coarser level knows better where it is */
   double reduction; /* rho, 1 < rho <= 2: how much longer voxels are from level to level */
   /* the start */
   plc_init init;

@@ -243,6 +243,50 @@ class Tile {
   Vector<float> weight_;
 };
 
+// Half of a difference over two voxels, per delta.
+std::array<float, 3> half_differences(const ImageView& image, double delta) {
+  std::array<float, 3> half;
+  for (size_t a = 0; a < 3; ++a) half[a] = 0.5F * image.scale[a] * static_cast<float>(delta);
+  return half;
+}
+
+// visit(cell, its tensor without noise) for the first `count` cells of a tile; noise: of its
+// voxels. Appends what that moves the surface by, where it passes.
+template <typename Visit>
+void visit_tensors(const Tile& tile, const std::array<int32_t, 3>& count,
+                   const std::array<float, 3>& half, double noise, Vector<float>& noises,
+                   const Visit& visit) {
+  std::array<float, 3> variance;
+  for (size_t a = 0; a < 3; ++a) {
+    const auto h = static_cast<double>(half[a]);
+    variance[a] = static_cast<float>(kLeftOfNoise * h * h * noise * noise);
+  }
+  float weight = 0;
+  std::array<float, 3> squares{};
+  for (int32_t z = 0; z < count[2]; ++z) {
+    for (int32_t y = 0; y < count[1]; ++y) {
+      for (int32_t x = 0; x < count[0]; ++x) {
+        Tensor tensor = tile.tensor(x, y, z);
+        tensor.clear_of(variance);
+        weight += tensor.weight;
+        for (size_t a = 0; a < 3; ++a) squares[a] += tensor.j[a];
+        visit({x, y, z}, tensor);
+      }
+    }
+  }
+  const auto squared = static_cast<double>(squares[0] + squares[1] + squares[2]);
+  if (!(squared > 0)) return;
+  noises.push_back(static_cast<float>(noise * std::sqrt(static_cast<double>(weight) / squared)));
+}
+
+// 0 of none.
+float median(Vector<float>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 uint8_t code(double size) {
   return static_cast<uint8_t>(std::clamp(size / static_cast<double>(SizeField::kStep), 1.0, 255.0));
 }
@@ -258,12 +302,12 @@ class SizeField::Builder {
         image_(image),
         padding_(padding),
         iso_(iso),
+        half_(half_differences(image, delta)),
         finest_(code(spec.finest)),
         coarsest_(code(spec.coarsest)) {
     double voxel = 0;  // in delta, in the mean over the axes
     for (size_t a = 0; a < 3; ++a) {
       tiles_[a] = (field.cells_[a] + kTile - 1) / kTile;
-      half_[a] = 0.5F * image.scale[a] * static_cast<float>(delta);
       voxel += 1 / (3 * static_cast<double>(image.scale[a]) * delta);
     }
     window_ = kWindow * voxel * voxel;
@@ -292,42 +336,23 @@ class SizeField::Builder {
     for (const Vector<float>& of_layer : noises) {
       noises_.insert(noises_.end(), of_layer.begin(), of_layer.end());
     }
-    if (noises_.empty()) return;
-    const auto middle = noises_.begin() + static_cast<std::ptrdiff_t>(noises_.size() / 2);
-    std::nth_element(noises_.begin(), middle, noises_.end());
-    field_.noise_ = *middle;
+    field_.noise_ = median(noises_);
   }
 
  private:
   // noise: of the tile's voxels. Appends what it moves the surface by.
   void fill(const Tile& tile, const std::array<int32_t, 3>& first, double noise,
             Vector<float>& noises) {
-    std::array<float, 3> variance{};
-    for (size_t a = 0; a < 3; ++a) {
-      const double half = static_cast<double>(half_[a]);
-      variance[a] = static_cast<float>(kLeftOfNoise * half * half * noise * noise);
-    }
-    Tensor all;
     const auto& cells = field_.cells_;
     const auto row = static_cast<size_t>(cells[0]), plane = row * static_cast<size_t>(cells[1]);
-    for (int32_t z = 0; z < std::min(kTile, cells[2] - first[2]); ++z) {
-      for (int32_t y = 0; y < std::min(kTile, cells[1] - first[1]); ++y) {
-        uint8_t* to =
-            &field_.sizes_[static_cast<size_t>(first[2] + z) * plane +
-                           static_cast<size_t>(first[1] + y) * row + static_cast<size_t>(first[0])];
-        for (int32_t x = 0; x < std::min(kTile, cells[0] - first[0]); ++x) {
-          Tensor tensor = tile.tensor(x, y, z);
-          tensor.clear_of(variance);
-          to[x] = size(tensor);
-          all.weight += tensor.weight;
-          for (size_t a = 0; a < 3; ++a) all.j[a] += tensor.j[a];
-        }
-      }
-    }
-    const double squared = static_cast<double>(all.j[0] + all.j[1] + all.j[2]);
-    if (!(squared > 0)) return;
-    noises.push_back(
-        static_cast<float>(noise * std::sqrt(static_cast<double>(all.weight) / squared)));
+    std::array<int32_t, 3> count;
+    for (size_t a = 0; a < 3; ++a) count[a] = std::min(kTile, cells[a] - first[a]);
+    visit_tensors(tile, count, half_, noise, noises,
+                  [&](const std::array<int32_t, 3>& at, const Tensor& tensor) {
+                    field_.sizes_[static_cast<size_t>(first[2] + at[2]) * plane +
+                                  static_cast<size_t>(first[1] + at[1]) * row +
+                                  static_cast<size_t>(first[0] + at[0])] = size(tensor);
+                  });
   }
 
   uint8_t size(const Tensor& tensor) const {
@@ -340,12 +365,46 @@ class SizeField::Builder {
   const ImageView& image_;
   int32_t padding_;
   float iso_;
+  std::array<float, 3> half_;
   uint8_t finest_, coarsest_;
   std::array<int32_t, 3> tiles_{};
-  std::array<float, 3> half_{};
   double window_ = 1, factor_ = 1;
   Vector<float> noises_;
 };
+
+float surface_noise(const ImageView& image, float iso, double delta, const Executor& executor) {
+  constexpr size_t kSampled = 512;  // tiles
+  std::array<size_t, 3> tiles;
+  for (size_t a = 0; a < 3; ++a) {
+    tiles[a] = (static_cast<size_t>(image.dims[a]) + kTile * kCell - 1) / (kTile * kCell);
+  }
+  const size_t all = tiles[0] * tiles[1] * tiles[2];
+  const size_t step = all / kSampled | 1;  // odd: not the same rows all the time
+  const std::array<float, 3> half = half_differences(image, delta);
+  const std::array<int32_t, 3> whole{kTile, kTile, kTile};
+  constexpr size_t kTogether = 16;
+  const size_t count = (all + step - 1) / step;
+  Vector<Vector<float>> parts((count + kTogether - 1) / kTogether);
+  executor.run(parts.size(), [&](size_t part) {
+    Tile tile(executor.simd());
+    for (size_t i = part * kTogether; i < std::min(count, (part + 1) * kTogether); ++i) {
+      const size_t t = i * step;
+      const std::array<size_t, 3> at{t % tiles[0], t / tiles[0] % tiles[1],
+                                     t / tiles[0] / tiles[1]};
+      std::array<int32_t, 3> first;
+      for (size_t a = 0; a < 3; ++a) first[a] = static_cast<int32_t>(at[a]) * kTile * kCell;
+      tile.read(image, image.form.pad, first);
+      if (!tile.crosses(iso)) continue;
+      const double noise = tile.noise();
+      tile.find_tensors(half, iso);
+      visit_tensors(tile, whole, half, noise, parts[part],
+                    [](const std::array<int32_t, 3>&, const Tensor&) {});
+    }
+  });
+  Vector<float> noises;
+  for (const Vector<float>& part : parts) noises.insert(noises.end(), part.begin(), part.end());
+  return median(noises);
+}
 
 Status SizeField::build(const ImageView& image, float iso, double delta, const SizeSpec& spec,
                         const Executor& executor, int32_t padding, const VoxelRoom& room) {

@@ -26,6 +26,10 @@ struct SizeSpec {
   double slope = 0.1;  // by how much sizes grow with the distance, at most
 };
 
+// SizeField::noise() of an image as build() takes it, from some of the places that the iso-surface
+// passes, before there is a field.
+float surface_noise(const ImageView& image, float iso, double delta, const Executor& executor);
+
 // Sizes of cubes of voxels: a byte each, in steps of 1/32 delta. Read by any thread, but for while
 // they are built or lowered.
 class SizeField {

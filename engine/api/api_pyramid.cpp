@@ -6,10 +6,12 @@
 
 #include "engine/api/parameters.h"
 #include "engine/base/constants.h"
+#include "engine/mesh/mesh_space.h"
 #include "kernels/image_rows.h"
 #include "pyramid/border.h"
 #include "pyramid/check_volume.h"
 #include "pyramid/feature.h"
+#include "pyramid/size_field.h"
 
 namespace plc {
 
@@ -21,8 +23,35 @@ double base_iso(const VolumeView& volume, const plc_parameters& p, double value)
   return iso > 0 && iso < 1 ? iso : normalised(p, value);
 }
 
+// Of I_0, for the adaptive mesh.
+bool is_noisy(const VolumeView& volume, const PyramidData& pyramid) {
+  const plc_parameters& p = pyramid.parameters;
+  const Pyramid& images = pyramid.images;
+  const MeshScale scale{static_cast<Anisotropy>(p.anisotropy), 1};
+  ImageView image = image_view(images, 0, kPadVoxels, mesh_space(images, 0, scale.anisotropy));
+  image.form.beyond = kBeyondWindow;
+  return surface_noise(image, static_cast<float>(base_iso(volume, p, p.iso)),
+                       level_delta(images, 0, scale), pyramid.host->schedule) > kNoisy;
+}
+
+// From levels and window to images: those of an image that would start by itself on I_0, but is
+// noisy, have the usual levels. noisy: where iso-values of levels are to be derived.
+Status build_images(const VolumeView& volume, bool derives_levels, bool& noisy,
+                    PyramidData& pyramid) {
+  plc_parameters& p = pyramid.parameters;
+  const Executor& executor = pyramid.host->schedule;
+  PyramidSpec spec = pyramid_spec(p);
+  spec.sparse = pyramid.volume->range.has_value() && pyramid.given.level_iso_count > 0;
+  if (Status s = build_pyramid(volume, spec, executor, pyramid.images); !s.ok()) return s;
+  noisy =
+      is_adaptive(p) && !std::isnan(p.iso) && p.level_iso_count == 0 && is_noisy(volume, pyramid);
+  if (!noisy || !derives_levels || p.levels > 0) return {};
+  spec.levels = p.levels = usual_levels(volume, p);
+  return build_pyramid(volume, spec, executor, pyramid.images);
+}
+
 // Derived values go into the parameters, too.
-void choose_isos(const VolumeView& volume, double background, PyramidData& pyramid) {
+void choose_isos(const VolumeView& volume, double background, bool noisy, PyramidData& pyramid) {
   plc_parameters& p = pyramid.parameters;
   std::vector<double>& isos = pyramid.isos;
   const Host& host = *pyramid.host;
@@ -31,6 +60,7 @@ void choose_isos(const VolumeView& volume, double background, PyramidData& pyram
   } else if (p.level_iso_count == 0) {
     isos = covering_isos(pyramid.images, base_iso(volume, p, p.iso), p.inside_below == 0,
                          level_iso_bound(p, background), host.schedule);
+    if (noisy && p.levels > 0) isos[1] = isos[0];
     for (int h = p.levels; h > 0; --h) {
       p.level_iso[p.levels - h] = denormalised(p, isos[static_cast<size_t>(h)]);
     }
@@ -89,11 +119,10 @@ Status build(const std::shared_ptr<const VolumeData>& source, const plc_paramete
     return s;
   }
   const double images_start = now();
-  PyramidSpec spec = pyramid_spec(p);
-  spec.sparse = source->range.has_value() && parameters.level_iso_count > 0;
-  if (Status s = build_pyramid(volume, spec, host.schedule, pyramid.images); !s.ok()) return s;
+  bool noisy = false;
+  if (Status s = build_images(volume, parameters.levels < 0, noisy, pyramid); !s.ok()) return s;
   pyramid.seconds_images = now() - images_start;
-  choose_isos(volume, window.background, pyramid);
+  choose_isos(volume, window.background, noisy, pyramid);
   close_borders(pyramid);
   // Of which an adaptive mesh may start (PLC_INIT_AUTO); not counted where nothing is derived of
   // it.

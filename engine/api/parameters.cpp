@@ -68,11 +68,6 @@ double usual_edge(double unit) {
   return kMeanEdge * unit / kUnitPerDelta;
 }
 
-bool is_adaptive(const plc_parameters& p) {
-  if (p.mesh != PLC_MESH_AUTO) return p.mesh == PLC_MESH_ADAPTIVE;
-  return p.force == PLC_FORCE_ISO && p.spring == 0 && p.edge == 0;
-}
-
 // Whether the surface starts from the image's iso-surface, near where it ends, and not from a
 // bubble around a coarse image. That takes about kBytes for each of the voxels at_surface, which
 // must be half of a limit at most. Of noise there is no end of them, and what it joins is taken
@@ -101,6 +96,16 @@ Status check_mesh(const plc_parameters& p) {
 }
 
 }  // namespace
+
+bool is_adaptive(const plc_parameters& p) {
+  if (p.mesh != PLC_MESH_AUTO) return p.mesh == PLC_MESH_ADAPTIVE;
+  return p.force == PLC_FORCE_ISO && p.spring == 0 && p.edge == 0;
+}
+
+int usual_levels(const VolumeView& volume, const plc_parameters& p) {
+  return std::min(PyramidSpec{}.levels,
+                  max_levels(padded_dims(volume.dims, kPadVoxels), p.reduction));
+}
 
 Status check_parameters(const plc_parameters& p) {
   if (Status s = check_ranges(p); !s.ok()) return s;
@@ -162,13 +167,12 @@ Status derive_parameters(const VolumeView& volume, const VoxelRange& range,
   }
   if (std::isnan(p.pad_value)) p.pad_value = above ? p.window_low : p.window_high;
   if (Status s = check_surroundings(p); !s.ok()) return s;
-  const int deepest = max_levels(padded_dims(volume.dims, kPadVoxels), p.reduction);
   if (p.levels < 0 && p.level_iso_count > 0) p.levels = p.level_iso_count - 1;
   if (p.levels < 0 && !std::isnan(p.iso) &&
       starts_at_iso(volume, window.at_surface, memory_limit, p)) {
     p.levels = 0;
   }
-  if (p.levels < 0) p.levels = std::min(PyramidSpec{}.levels, deepest);
+  if (p.levels < 0) p.levels = usual_levels(volume, p);
   return {};
 }
 

@@ -12,6 +12,12 @@ namespace plc {
 // the range.
 Status check_parameters(const plc_parameters& parameters);
 
+// Whether the mesh is to be an adaptive one.
+bool is_adaptive(const plc_parameters& parameters);
+
+// Above I_0, where a surface does not start on it.
+int usual_levels(const VolumeView& volume, const plc_parameters& parameters);
+
 // Fills in what is NAN or -1: window, pad value, level count. `range` is that of the image;
 // `window` is set to what the image tells, where something is to be derived of that. memory_limit:
 // of the context, 0: none. Errors: kInvalidArgument, kInvalidData (constant or not finite image,

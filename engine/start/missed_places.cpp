@@ -76,6 +76,27 @@ struct Place {
   int64_t voxels = 0;
 };
 
+// Voxels of which no kPlaceVoxels on their side of iso are joined by faces: of noise there is no
+// end of them, and by edges and corners they all hang together.
+void leave_out_specks(const ImageObject& object, const Executor& executor, Sets& missed) {
+  const ImageView& image = object.image;
+  executor.run(static_cast<size_t>(image.dims[2]), [&](size_t slice) {
+    const auto z = static_cast<int32_t>(slice);
+    for (size_t k = 0; k < 2; ++k) {
+      const bool of_object = k == static_cast<size_t>(Missed::kPart);
+      const auto is_side = [&](const Voxel& v) {
+        return is_within(image.dims, v) &&
+               object.has(image_value(image, v[0], v[1], v[2])) == of_object;
+      };
+      for (int32_t y = 0; y < image.dims[1]; ++y) {
+        missed[k].visit_row(y, z, 0, image.dims[0], [&](int32_t x) {
+          if (!is_joined({x, y, z}, kPlaceVoxels, is_side)) missed[k].erase({x, y, z});
+        });
+      }
+    }
+  });
+}
+
 class Search {
  public:
   Search(const ImageObject& object, Sets& missed)
@@ -381,6 +402,9 @@ MissedPlaces find_missed_places(const Mesh& mesh, const ImageObject& object,
                           ? 0
                           : kMaxEdge * mesh.sizing->field.finest() * static_cast<float>(mesh.delta);
   search.clear_near(mesh, apart, limits.clearance, executor);
+  if (mesh.sizing != nullptr && mesh.sizing->field.noise() > kNoisy) {
+    leave_out_specks(object, executor, missed);
+  }
   search.list_ball(limits.radius);
   MissedPlaces places;
   places.low.fill({image.dims[0], image.dims[1], image.dims[2]});

@@ -35,7 +35,8 @@ struct PlaceLimits {
 // is adaptive, of a face. Left out are those that hold no ball of `radius`, where the mesh is
 // adaptive nor kPlaceVoxels voxels, and those with a voxel that `tried` holds; and where the mesh
 // is adaptive those in parts of the object of which no kPlaceVoxels voxels are joined by faces
-// (joined_voxels.h). The others are put into `tried`, which is of the image's voxels or of none
+// (joined_voxels.h), and where it is noisy (kNoisy) all voxels that are not joined to so many on
+// their side of iso. The others are put into `tried`, which is of the image's voxels or of none
 // yet. Of a place those voxels get a bubble where the image is on the same side of iso for
 // `thinnest` along each axis, and those beside them; a place without any gets none. The same for
 // any executor.

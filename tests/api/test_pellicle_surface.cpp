@@ -302,6 +302,38 @@ TEST_CASE("levels are reported from coarse to fine", "[pellicle]") {
   CHECK(level(0, &r) == PLC_OK);
 }
 
+TEST_CASE("of a noisy image an adaptive mesh is recovered from the levels above it", "[pellicle]") {
+  const Context context = samples::make_context();
+  constexpr int64_t kSide = 56;
+  const auto used_for = [&](double noise) {
+    samples::Volume volume = samples::empty_volume({kSide, kSide, kSide});
+    samples::Random random(4);
+    for (int64_t i = 0; i < kSide * kSide * kSide; ++i) {
+      const auto away = [=](int64_t k) { return static_cast<double>(k) - 0.5 * (kSide - 1); };
+      const double r =
+          std::hypot(away(i % kSide), away(i / kSide % kSide), away(i / kSide / kSide));
+      const double value = std::clamp(0.5 + 0.1 * (14 - r), 0.0, 1.0);
+      volume.values.push_back(static_cast<float>(value + random.uniform(-noise, noise)));
+    }
+    const Surface surface =
+        samples::extract(context.get(), samples::image_of(volume), samples::parameters(0.5, -1));
+    plc_measures measures{};
+    measures.struct_size = sizeof measures;
+    REQUIRE(plc_surface_measure(context.get(), surface.get(), PLC_SPACE_LPS, &measures) == PLC_OK);
+    CHECK(measures.genus == 0);
+    CHECK(measures.volume == Approx(4.0 / 3 * 3.14159 * 14 * 14 * 14).epsilon(0.05));
+    return samples::parameters_of(surface.get());
+  };
+  CHECK(used_for(0.1).levels == 0);
+  const plc_parameters used = used_for(0.6);
+  CHECK(used.init == PLC_INIT_BUBBLE);
+  REQUIRE(used.levels == 3);
+  // The coarser ones cover the object, which lies where I_0 has it on the finest of them.
+  CHECK(used.level_iso[0] < 0.45);
+  CHECK(used.level_iso[2] == Approx(0.5));
+  CHECK(used.level_iso[3] == Approx(0.5));
+}
+
 TEST_CASE("the parameters as used have everything filled in", "[pellicle]") {
   const Context context = samples::make_context();
   plc_parameters p = samples::parameters(0.5, -1);

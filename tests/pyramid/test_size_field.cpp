@@ -103,9 +103,35 @@ TEST_CASE("noise is told from shape, also where values are clipped", "[size_fiel
     REQUIRE(field.build(view, 0.5F, 1, {}, samples::kSerial).ok());
     // Values rise by 0.25 a delta.
     CHECK(field.noise() == Approx(deviation / 0.25F).epsilon(0.15));
+    // Of so small an image no place is passed over.
+    CHECK(plc::surface_noise(view, 0.5F, 1, samples::kSerial) == field.noise());
     const float clean_size = at(of_clean, kMiddle + 16, kMiddle, kMiddle);
     CHECK(at(field, kMiddle + 16, kMiddle, kMiddle) == Approx(clean_size).epsilon(0.25));
   }
+}
+
+TEST_CASE("of a large image noise is told from some of its places, the same by any executor",
+          "[size_field]") {
+  constexpr int kLong = 160;
+  std::vector<float> values;
+  samples::Random random(5);
+  for (int z = 0; z < kLong; ++z) {
+    for (int i = 0; i < kLong * kLong; ++i) {
+      const double ramp = 0.5 + 0.1 * (z - 0.5 * kLong + 0.1 * (i % kLong));
+      values.push_back(static_cast<float>(ramp + random.uniform(-0.4, 0.4)));
+    }
+  }
+  const plc::ImageView view{values.data(),
+                            {kLong, kLong, kLong},
+                            {1.25F, 1.25F, 1.25F},
+                            {0, 0, 0},
+                            {plc::ImageType::kF32, 0, 0, 0, 1, 4}};
+  const float noise = plc::surface_noise(view, 0.5F, 1, samples::kSerial);
+  // Values rise by 0.1 sqrt 1.01 a voxel, which is 0.8 delta.
+  CHECK(noise == Approx(0.8 / std::sqrt(12) / 0.1 / 1.25 / std::sqrt(1.01)).epsilon(0.1));
+  const plc::Schedule threads(3);
+  CHECK(plc::surface_noise(view, 0.5F, 1, threads) == noise);
+  CHECK(plc::surface_noise(view, 90, 1, samples::kSerial) == 0);
 }
 
 TEST_CASE("rods get the finest size, plates as thin do not", "[size_field]") {

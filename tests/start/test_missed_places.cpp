@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "engine/base/constants.h"
 #include "engine/base/schedule.h"
 #include "tests/samples/sample_scenes.h"
 #include "tests/samples/sample_surfaces.h"
@@ -305,5 +306,34 @@ TEST_CASE("parts of fewer than 27 voxels joined by faces are nothing to an adapt
     REQUIRE(sizing.field.build(scene.view(), kIso, 1, {}, schedule).ok());
     mesh.sizing = &sizing;
     CHECK(find(mesh, scene, {kClearance, 0.6F}).count[kPart] == (whole ? 1 : 0));
+  }
+}
+
+TEST_CASE("voxels that only touch what is missed are noise where the image is noisy",
+          "[missed_places]") {
+  BallScene scene({kMain});
+  for (int32_t z = 10; z < 13; ++z) {
+    for (int32_t y = 10; y < 13; ++y) {
+      for (int32_t x = 27; x < 30; ++x) scene.at(x, y, z) = 1;
+    }
+  }
+  scene.at(30, 13, 13) = 1;  // by a corner
+  std::vector<float> ramp;
+  samples::Random random(2);
+  for (int i = 0; i < 16 * 16 * 16; ++i) {
+    ramp.push_back(static_cast<float>(0.05 * (i % 16) + random.uniform(-0.5, 0.5)));
+  }
+  const plc::ImageView noisy{
+      ramp.data(), {16, 16, 16}, {1, 1, 1}, {0, 0, 0}, {plc::ImageType::kF32, 0, 0, 0, 1, 4}};
+  Mesh mesh;
+  surface_around(mesh, kMain);
+  for (const bool noise : {false, true}) {
+    plc::Sizing sizing;
+    REQUIRE(sizing.field.build(noise ? noisy : scene.view(), 0.4F, 1, {}, samples::kSerial).ok());
+    REQUIRE((sizing.field.noise() > plc::kNoisy) == noise);
+    mesh.sizing = &sizing;
+    const MissedPlaces places = find(mesh, scene, {kClearance, 0.6F});
+    CHECK(places.count[kPart] == 1);
+    CHECK(voxels_of(places, Missed::kPart) == (noise ? 27 : 28));
   }
 }

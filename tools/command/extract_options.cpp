@@ -207,7 +207,9 @@ class Declarations {
            "The object is where the image is above (a bright object) or below iso");
     text("--level-iso", "V,...", "derived",
          "Value of the surface on each level from the coarsest to the full image, in the image's "
-         "units; by default those at which the level's object covers that of the full image",
+         "units; by default those at which the level's object covers that of the full image; of a "
+         "noisy "
+         "image, with an adaptive mesh, the last but one is that of the full image, too",
          [&p = p_](const std::string& s) { read_level_isos(s, p); });
     text("--window", "LO,HI", "derived",
          "Values that are mapped to 0 and 1, in the image's units; iso lies between them",

@@ -51,7 +51,7 @@ class Parameters:
     init : {"bubble", "bubbles", "seeds", "iso", "mask", "mesh", "auto"}
         What the surface starts from (3.6). `seeds=`, `mask=`, `mesh=` and `bubbles=` imply theirs
         where `init` is not given. auto: the iso-surface of the full image, with 0 levels, for an
-        adaptive mesh where noise does not make that too large, without attachments and pins; else
+        adaptive mesh where noise is not too much for that, without attachments and pins; else
         a bubble.
     bubbles : tuple of int
         How many bubbles along x, y, z, each 1 .. 256.
