@@ -35,7 +35,7 @@ bool is_noisy(const VolumeView& volume, const PyramidData& pyramid) {
 }
 
 // From levels and window to images: those of an image that would start by itself on I_0, but is
-// noisy, have the usual levels. noisy: where iso-values of levels are to be derived.
+// noisy, have the usual levels. noisy: where levels or their iso-values depend on it.
 Status build_images(const VolumeView& volume, bool derives_levels, bool& noisy,
                     PyramidData& pyramid) {
   plc_parameters& p = pyramid.parameters;
@@ -43,9 +43,10 @@ Status build_images(const VolumeView& volume, bool derives_levels, bool& noisy,
   PyramidSpec spec = pyramid_spec(p);
   spec.sparse = pyramid.volume->range.has_value() && pyramid.given.level_iso_count > 0;
   if (Status s = build_pyramid(volume, spec, executor, pyramid.images); !s.ok()) return s;
-  noisy =
-      is_adaptive(p) && !std::isnan(p.iso) && p.level_iso_count == 0 && is_noisy(volume, pyramid);
-  if (!noisy || !derives_levels || p.levels > 0) return {};
+  const bool derives_isos = !std::isnan(p.iso) && p.level_iso_count == 0;
+  const bool asks = is_adaptive(p) && derives_isos && (derives_levels || p.levels > 0);
+  noisy = asks && is_noisy(volume, pyramid);
+  if (!noisy || p.levels > 0) return {};
   spec.levels = p.levels = usual_levels(volume, p);
   return build_pyramid(volume, spec, executor, pyramid.images);
 }
