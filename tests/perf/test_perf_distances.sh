@@ -50,6 +50,8 @@ expect 0 "| knee.nii | -4.5e1 | $numbers" head.nii:226 knee.nii:-4.5e1 -- --insi
 has pellicle.log '--space voxel --quiet --inside below --levels 0'
 has program.log '--space voxel --inside below --pad -7.5'
 expect 0 "| knee.nii | 3 | $numbers" -- --levels 0 knee.nii:3
+expect 0 "| knee.nii | 3 | $numbers" --reference head.nii knee.nii:3
+has program.log "$PWD/head.nii 3 "
 
 # Errors are one line.
 wrong() {
@@ -60,6 +62,7 @@ wrong 'a volume, FILE:ISO, is expected'
 wrong 'head.nii: FILE:ISO is expected' head.nii
 wrong 'head.nii:x: FILE:ISO is expected' head.nii:x
 wrong 'gone.nii: no such file' gone.nii:3
+wrong 'gone.nii: no such file' --reference gone.nii head.nii:3
 wrong 'unknown option --fast' --fast head.nii:3
 wrong '--space: not to be given here' head.nii:3 -- --space=ras
 wrong '--inside sideways: above or below' head.nii:3 -- --inside sideways
