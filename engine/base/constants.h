@@ -209,8 +209,8 @@ inline constexpr int64_t kPlaceVoxels = 27;
 // Noise that moves the iso-surface by more than this, standard deviation in delta, makes so much of
 // it that where it lies is told by the level above I_0: an adaptive mesh is recovered from there,
 // at the iso-value of I_0, and its late bubbles leave out specks. Balls, a chain and a shell come
-// out 1.2 to 1.9 times as near to what is true as from the iso-surface of I_0, and in a tenth to
-// two fifths of the time; with 1.5 delta vessels are nearer from there, with less plates are.
+// out 1.2 to 1.9 times as near to what is true as from the iso-surface of I_0, in a quarter to half
+// of the time (perf/results/distances.md); with 1.5 thin vessels come out farther, with 1 plates.
 inline constexpr float kNoisy = 2;
 // What still moves is not missed yet: a surface is searched when its energy is below this many
 // epsilon.
