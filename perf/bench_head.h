@@ -40,6 +40,9 @@ struct HeadVolume {
     parameters.mesh = PLC_MESH_UNIFORM;
     const auto range = plc::voxel_range(volume, schedule);
     demand(plc::derive_parameters(volume, range, schedule, 0, parameters, window));
+    plc_extras extras;
+    plc_extras_defaults(&extras);
+    plc::derive_init(extras, parameters);
   }
 
   // The pyramid of p, which differ from `parameters` in what is no value of the image, and what is
