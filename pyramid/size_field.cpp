@@ -250,12 +250,17 @@ std::array<float, 3> half_differences(const ImageView& image, double delta) {
   return half;
 }
 
-// visit(cell, its tensor without noise) for the first `count` cells of a tile; noise: of its
-// voxels. Appends what that moves the surface by, where it passes.
+// Reads the tile from the voxel `first` on; where the iso-surface passes, visit(cell, its tensor
+// without noise) for `count` cells from its first on, and what noise moves the surface by goes to
+// `noises`. half: as half_differences() has it.
 template <typename Visit>
-void visit_tensors(const Tile& tile, const std::array<int32_t, 3>& count,
-                   const std::array<float, 3>& half, double noise, Vector<float>& noises,
-                   const Visit& visit) {
+void visit_tensors(const ImageView& image, int32_t padding, const std::array<int32_t, 3>& first,
+                   const std::array<int32_t, 3>& count, const std::array<float, 3>& half, float iso,
+                   Tile& tile, Vector<float>& noises, const Visit& visit) {
+  tile.read(image, padding, first);
+  if (!tile.crosses(iso)) return;
+  const double noise = tile.noise();
+  tile.find_tensors(half, iso);
   std::array<float, 3> variance;
   for (size_t a = 0; a < 3; ++a) {
     const auto h = static_cast<double>(half[a]);
@@ -280,7 +285,9 @@ void visit_tensors(const Tile& tile, const std::array<int32_t, 3>& count,
 }
 
 // 0 of none.
-float median(Vector<float>& values) {
+float median_of(const Vector<Vector<float>>& parts) {
+  Vector<float> values;
+  for (const Vector<float>& part : parts) values.insert(values.end(), part.begin(), part.end());
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -321,37 +328,28 @@ class SizeField::Builder {
       Tile tile(executor.simd());
       for (int32_t y = 0; y < tiles_[1]; ++y) {
         for (int32_t x = 0; x < tiles_[0]; ++x) {
-          const std::array<int32_t, 3> cell{x * kTile, y * kTile, static_cast<int32_t>(z) * kTile};
-          const auto& first = field_.first_;
-          tile.read(image_, padding_,
-                    {(first[0] + cell[0]) * kCell, (first[1] + cell[1]) * kCell,
-                     (first[2] + cell[2]) * kCell});
-          if (!tile.crosses(iso_)) continue;
-          const double noise = tile.noise();
-          tile.find_tensors(half_, iso_);
-          fill(tile, cell, noise, noises[z]);
+          fill({x * kTile, y * kTile, static_cast<int32_t>(z) * kTile}, tile, noises[z]);
         }
       }
     });
-    for (const Vector<float>& of_layer : noises) {
-      noises_.insert(noises_.end(), of_layer.begin(), of_layer.end());
-    }
-    field_.noise_ = median(noises_);
+    field_.noise_ = median_of(noises);
   }
 
  private:
-  // noise: of the tile's voxels. Appends what it moves the surface by.
-  void fill(const Tile& tile, const std::array<int32_t, 3>& first, double noise,
-            Vector<float>& noises) {
+  // The sizes of a tile from the cell `begin` on.
+  void fill(const std::array<int32_t, 3>& begin, Tile& tile, Vector<float>& noises) {
     const auto& cells = field_.cells_;
     const auto row = static_cast<size_t>(cells[0]), plane = row * static_cast<size_t>(cells[1]);
-    std::array<int32_t, 3> count;
-    for (size_t a = 0; a < 3; ++a) count[a] = std::min(kTile, cells[a] - first[a]);
-    visit_tensors(tile, count, half_, noise, noises,
+    std::array<int32_t, 3> first, count;
+    for (size_t a = 0; a < 3; ++a) {
+      first[a] = (field_.first_[a] + begin[a]) * kCell;
+      count[a] = std::min(kTile, cells[a] - begin[a]);
+    }
+    visit_tensors(image_, padding_, first, count, half_, iso_, tile, noises,
                   [&](const std::array<int32_t, 3>& at, const Tensor& tensor) {
-                    field_.sizes_[static_cast<size_t>(first[2] + at[2]) * plane +
-                                  static_cast<size_t>(first[1] + at[1]) * row +
-                                  static_cast<size_t>(first[0] + at[0])] = size(tensor);
+                    field_.sizes_[static_cast<size_t>(begin[2] + at[2]) * plane +
+                                  static_cast<size_t>(begin[1] + at[1]) * row +
+                                  static_cast<size_t>(begin[0] + at[0])] = size(tensor);
                   });
   }
 
@@ -369,7 +367,6 @@ class SizeField::Builder {
   uint8_t finest_, coarsest_;
   std::array<int32_t, 3> tiles_{};
   double window_ = 1, factor_ = 1;
-  Vector<float> noises_;
 };
 
 float surface_noise(const ImageView& image, float iso, double delta, const Executor& executor) {
@@ -393,17 +390,11 @@ float surface_noise(const ImageView& image, float iso, double delta, const Execu
                                      t / tiles[0] / tiles[1]};
       std::array<int32_t, 3> first;
       for (size_t a = 0; a < 3; ++a) first[a] = static_cast<int32_t>(at[a]) * kTile * kCell;
-      tile.read(image, image.form.pad, first);
-      if (!tile.crosses(iso)) continue;
-      const double noise = tile.noise();
-      tile.find_tensors(half, iso);
-      visit_tensors(tile, whole, half, noise, parts[part],
+      visit_tensors(image, image.form.pad, first, whole, half, iso, tile, parts[part],
                     [](const std::array<int32_t, 3>&, const Tensor&) {});
     }
   });
-  Vector<float> noises;
-  for (const Vector<float>& part : parts) noises.insert(noises.end(), part.begin(), part.end());
-  return median(noises);
+  return median_of(parts);
 }
 
 Status SizeField::build(const ImageView& image, float iso, double delta, const SizeSpec& spec,
