@@ -9,6 +9,7 @@
 #include "engine/recover/cost.h"
 #include "engine/recover/frozen_sites.h"
 #include "engine/resolve/refinement.h"
+#include "engine/start/folds.h"
 
 namespace plc {
 
@@ -120,12 +121,16 @@ Status Recovery::start_level() {
     }
     const LevelImage level{pyramid_, level_,         spec_.pad_voxels,
                            space_,   iso_of(level_), spec_.inside_above};
-    const auto go_on = [this, parts = 0]() mutable {
+    StartHooks hooks;
+    hooks.go_on = [this, parts = 0]() mutable {
       if (levels_ == 0) progress_.fraction = ProgressEstimate::at_start(++parts);
       return !hooks_.progress || hooks_.progress({level_, levels_, 0, 0, 0, 0, progress_.fraction});
     };
+    hooks.before_thinning = [this](const HalfEdges& surface, const Buffer<float>& xyz) {
+      if (find_folds(mesh_, surface, xyz, schedule_, folds_)) lower_sizes();
+    };
     if (Status s = start_surface(spec_.start, level, delta_of(level_), schedule_, mesh_,
-                                 record().operations, go_on);
+                                 record().operations, hooks);
         !s.ok()) {
       // So that it can be started again.
       mesh_.clear();

@@ -1,7 +1,10 @@
 // Where a surface bends and the image, by which an adaptive mesh has its sizes, does not.
 #pragma once
 #include "engine/mesh/mesh.h"
+#include "engine/start/half_edges.h"
 #include "engine/start/voxel_set.h"
+#include "pyramid/buffer.h"
+#include "pyramid/executor.h"
 
 namespace plc {
 
@@ -14,5 +17,12 @@ float late_size(const Mesh& mesh, const Voxel& voxel);
 // than kFoldCosine: of the border of a hole that a coarser level has torn into a plate, of
 // tips and ridges that the image has not. False where there are none. The mesh is adaptive.
 bool find_folds(const Mesh& mesh, VoxelSet& folds);
+
+// The same of the vertices of the surface that the mesh is to start from, but only where the full
+// image is thin: the rims of holes and of strips, which would be cut to pieces by edges that are
+// long for them before anything has moved. xyz: its vertices, in mesh space. The same for any
+// executor.
+bool find_folds(const Mesh& mesh, const HalfEdges& surface, const Buffer<float>& xyz,
+                const Executor& executor, VoxelSet& folds);
 
 }  // namespace plc

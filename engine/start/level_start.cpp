@@ -222,7 +222,8 @@ Status make_mesh(const StartSpec& spec, const LevelImage& level, const Executor&
 // Every so many voxels of an image that is finer than delta on some axis (level_delta): a surface
 // that follows all of them is so crowded that conform() takes minutes.
 Status coarse_iso_surface(const ImageObject& object, const std::array<int32_t, 3>& stride,
-                          const Schedule& schedule, int64_t least, const GoOn& go_on, Mesh& mesh) {
+                          const Schedule& schedule, int64_t least, const StartHooks& hooks,
+                          Mesh& mesh) {
   const ImageView& view = object.image;
   ImageView coarse = view;
   for (size_t a = 0; a < 3; ++a) {
@@ -239,25 +240,25 @@ Status coarse_iso_surface(const ImageObject& object, const std::array<int32_t, 3
     for (int32_t x = 0; x < coarse.dims[0]; ++x) inside[x] = object.has(at(x, y, z));
   };
   return regular_iso_surface({coarse, object.iso, object.above}, {sides, at}, schedule, mesh, least,
-                             go_on);
+                             hooks);
 }
 
 // An image without the object is no error: the next finer level may show it.
 Status make_iso(const ImageObject& object, double delta, const Schedule& schedule, int64_t least,
-                const GoOn& go_on, Mesh& mesh) {
+                const StartHooks& hooks, Mesh& mesh) {
   std::array<int32_t, 3> stride{};
   for (size_t a = 0; a < 3; ++a) {
     stride[a] =
         std::max(1, static_cast<int32_t>(delta * static_cast<double>(object.image.scale[a])));
   }
   Status s = stride == std::array<int32_t, 3>{1, 1, 1}
-                 ? regular_iso_surface(object, values_of(object), schedule, mesh, least, go_on)
-                 : coarse_iso_surface(object, stride, schedule, least, go_on, mesh);
+                 ? regular_iso_surface(object, values_of(object), schedule, mesh, least, hooks)
+                 : coarse_iso_surface(object, stride, schedule, least, hooks, mesh);
   return s.code() == ErrorCode::kInvalidData ? Status() : s;
 }
 
 Status make_start(const StartSpec& spec, const LevelImage& level, double delta,
-                  const Schedule& schedule, const GoOn& go_on, Mesh& mesh) {
+                  const Schedule& schedule, const StartHooks& hooks, Mesh& mesh) {
   Extent box;
   switch (spec.init) {
     case Init::kBubble:
@@ -271,12 +272,12 @@ Status make_start(const StartSpec& spec, const LevelImage& level, double delta,
     case Init::kIso:
       assert(level.iso);
       if (mesh.sizing != nullptr) {
-        return make_iso(mesh.sizing->object, delta, schedule, kPlaceVoxels, go_on, mesh);
+        return make_iso(mesh.sizing->object, delta, schedule, kPlaceVoxels, hooks, mesh);
       }
       return make_iso({view_of(level, level.pyramid), *level.iso, level.inside_above}, delta,
-                      schedule, 0, go_on, mesh);
+                      schedule, 0, hooks, mesh);
     case Init::kMask:
-      return make_iso({view_of(level, spec.mask), 0.5F, true}, delta, schedule, 0, go_on, mesh);
+      return make_iso({view_of(level, spec.mask), 0.5F, true}, delta, schedule, 0, hooks, mesh);
     case Init::kMesh:
       return make_mesh(spec, level, schedule, mesh);
   }
@@ -303,21 +304,21 @@ Status check_obstacles(const Mesh& mesh, const LevelImage& level) {
 
 Status start_surface(const StartSpec& spec, const LevelImage& level, double delta,
                      const Schedule& schedule, Mesh& mesh, OperationCounts& counts,
-                     const GoOn& go_on) {
+                     const StartHooks& hooks) {
   mesh.clear();
   mesh.delta = delta;
   if (spec.patch && spec.abc.empty()) {
     mesh.hold({});
     return {};
   }
-  Status made = make_start(spec, level, delta, schedule, go_on, mesh);
+  Status made = make_start(spec, level, delta, schedule, hooks, mesh);
   if (!made.ok() || mesh.vertex_count() == 0) return made;
   if (mesh.obstacles != nullptr) {
     if (Status s = check_obstacles(mesh, level); !s.ok()) return s;
   }
   // A patch is fitted to what it is a part of when its level starts.
   if (!spec.conforms() || mesh.is_patch()) return {};
-  Status s = conform(mesh, delta, schedule, counts, go_on);
+  Status s = conform(mesh, delta, schedule, counts, hooks.go_on);
   // Where nothing is left, a finer level may resolve it; but for a mesh that was given.
   const bool resolved = mesh.vertex_count() != 0 || spec.init == Init::kMesh;
   return resolved || s.code() == ErrorCode::kCancelled ? s : Status();

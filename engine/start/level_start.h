@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "engine/base/go_on.h"
 #include "engine/base/schedule.h"
 #include "engine/base/statistics.h"
 #include "engine/mesh/mesh.h"
 #include "engine/mesh/mesh_space.h"
+#include "engine/start/start_hooks.h"
 #include "pyramid/pyramid.h"
 #include "pyramid/status.h"
 
@@ -61,6 +61,6 @@ struct LevelImage {
 // now and then, says so.
 Status start_surface(const StartSpec& spec, const LevelImage& level, double delta,
                      const Schedule& schedule, Mesh& mesh, OperationCounts& counts,
-                     const GoOn& go_on);
+                     const StartHooks& hooks);
 
 }  // namespace plc

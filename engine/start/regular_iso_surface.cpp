@@ -142,13 +142,14 @@ bool set_apart(const Mesh& mesh, const Schedule& schedule, const Vector<uint64_t
 }  // namespace
 
 Status regular_iso_surface(const ImageObject& object, const LatticeValues& values,
-                           const Schedule& schedule, Mesh& mesh, int64_t least, const GoOn& go_on) {
+                           const Schedule& schedule, Mesh& mesh, int64_t least,
+                           const StartHooks& hooks) {
   if (mesh.sizing != nullptr) {
     const auto make = [&](Crossings& crossings) -> Status {
       if (Status s = iso_crossings(object, values, least, schedule, crossings); !s.ok()) return s;
-      return ask(go_on);
+      return ask(hooks.go_on);
     };
-    return thin_out(make, schedule, go_on, mesh);
+    return thin_out(make, schedule, hooks, mesh);
   }
   Vector<uint64_t> voxel;
   if (Status s = iso_surface(object, values, schedule, mesh, &voxel); !s.ok()) {

@@ -9,17 +9,17 @@
 // Graphics 23, 1999). They keep crossings apart beforehand, by cases; here crossings are merged as
 // long as edges may be contracted, and apart again where the faces then meet.
 #pragma once
-#include "engine/base/go_on.h"
 #include "engine/base/schedule.h"
 #include "engine/start/iso_surface.h"
+#include "engine/start/start_hooks.h"
 
 namespace plc {
 
 // As iso_surface(); embedded, with other vertices, and without gaps in the ids. least: in an
-// adaptive mesh as iso_crossings() has it, in others 0. kCancelled, with the mesh spoilt, where
-// go_on, asked between parts of the work in adaptive meshes, says so.
+// adaptive mesh as iso_crossings() has it, in others 0. Hooks are for adaptive meshes. kCancelled,
+// with the mesh spoilt, where go_on, asked between parts of the work, says so.
 Status regular_iso_surface(const ImageObject& object, const LatticeValues& values,
                            const Schedule& schedule, Mesh& mesh, int64_t least = 0,
-                           const GoOn& go_on = {});
+                           const StartHooks& hooks = {});
 
 }  // namespace plc

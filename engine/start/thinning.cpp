@@ -45,15 +45,14 @@ uint32_t left_of(const Vector<uint32_t>& into, uint32_t v) {
 // Merges vertices, in stages.
 class Thinning {
  public:
-  // abc: of the surface's faces. stays: of each vertex, whether it neither is merged nor others
-  // are into it.
-  Thinning(Buffer<uint32_t>&& abc, const Buffer<SizedPlace>& places, Vector<uint8_t>& stays,
+  // stays: of each vertex, whether it neither is merged nor others are into it.
+  Thinning(HalfEdges&& surface, const Buffer<SizedPlace>& places, Vector<uint8_t>& stays,
            uint32_t most_neighbors, const Executor& executor)
       : places_(places),
         stays_(stays),
         most_neighbors_(most_neighbors),
         executor_(executor),
-        mesh_(std::move(abc), places.size(), executor),
+        mesh_(std::move(surface)),
         into_(places.size()) {
     std::iota(into_.begin(), into_.end(), 0U);
   }
@@ -393,19 +392,22 @@ struct Merged {
 
 // Makes the mesh what is left of the surface. Of that nothing else is kept: it takes more than the
 // mesh does. stays: as of Thinning; none where it is empty.
-Status thin_out_once(const MakeCrossings& make, const Schedule& schedule, const GoOn& go_on,
+Status thin_out_once(const MakeCrossings& make, const Schedule& schedule, const StartHooks& hooks,
                      Mesh& mesh, Vector<uint8_t>& stays, Merged& merged) {
-  Crossings surface;
-  if (Status s = make(surface); !s.ok()) return s;
-  const Buffer<SizedPlace> places = places_of(surface.xyz, mesh, schedule);
-  surface.xyz = Buffer<float>();
-  if (stays.empty()) stays.assign(places.size(), 0);
-  Thinning thinning(std::move(surface.abc), places, stays, mesh.most_neighbors, schedule);
+  Crossings crossings;
+  if (Status s = make(crossings); !s.ok()) return s;
+  HalfEdges surface(std::move(crossings.abc), crossings.xyz.size() / 3, schedule);
+  const bool first = stays.empty();
+  if (first && hooks.before_thinning) hooks.before_thinning(surface, crossings.xyz);
+  const Buffer<SizedPlace> places = places_of(crossings.xyz, mesh, schedule);
+  crossings.xyz = Buffer<float>();
+  if (first) stays.assign(places.size(), 0);
+  Thinning thinning(std::move(surface), places, stays, mesh.most_neighbors, schedule);
   const Box3 bounds = bounds_of(places);
   const float side = kSide * static_cast<float>(mesh.delta);
   for (const float shift : kShifts) {
     thinning.run(ThinningGrid(places, thinning.mesh(), bounds, side, shift, schedule));
-    if (Status s = ask(go_on); !s.ok()) return s;
+    if (Status s = ask(hooks.go_on); !s.ok()) return s;
   }
   fill(mesh, thinning.mesh(), places, schedule, merged.ids);
   merged.into = thinning.take_into();
@@ -414,12 +416,12 @@ Status thin_out_once(const MakeCrossings& make, const Schedule& schedule, const 
 
 }  // namespace
 
-Status thin_out(const MakeCrossings& make, const Schedule& schedule, const GoOn& go_on,
+Status thin_out(const MakeCrossings& make, const Schedule& schedule, const StartHooks& hooks,
                 Mesh& mesh) {
   Vector<uint8_t> stays;
   for (int i = 0;; ++i) {
     Merged merged;
-    if (Status s = thin_out_once(make, schedule, go_on, mesh, stays, merged); !s.ok()) return s;
+    if (Status s = thin_out_once(make, schedule, hooks, mesh, stays, merged); !s.ok()) return s;
     // What meets was merged in different blocks. It stays as it was, as what meets in a block.
     const auto meeting = meeting_faces(mesh, schedule);
     if (meeting.empty()) return {};

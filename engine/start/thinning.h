@@ -3,10 +3,10 @@
 #pragma once
 #include <functional>
 
-#include "engine/base/go_on.h"
 #include "engine/base/schedule.h"
 #include "engine/mesh/mesh.h"
 #include "engine/start/iso_surface.h"
+#include "engine/start/start_hooks.h"
 #include "pyramid/status.h"
 
 namespace plc {
@@ -24,9 +24,11 @@ namespace plc {
 // make(surface) makes the surface, always the same: closed, oriented, a manifold, embedded, in mesh
 // space; every vertex has a face. It is not kept, and made once more where faces of different
 // blocks meet. The result is embedded, too, without gaps in its ids, which lie along a Morton
-// curve. mesh.sizing is not null. Throws std::bad_alloc; kCancelled, with the mesh spoilt, where
-// go_on, asked after every grid, says so; what make() fails with.
+// curve. mesh.sizing is not null; its sizes may be lowered by before_thinning. Throws
+// std::bad_alloc; kCancelled, with the mesh spoilt, where go_on, asked after every grid, says so;
+// what make() fails with.
 using MakeCrossings = std::function<Status(Crossings& surface)>;
-Status thin_out(const MakeCrossings& make, const Schedule& schedule, const GoOn& go_on, Mesh& mesh);
+Status thin_out(const MakeCrossings& make, const Schedule& schedule, const StartHooks& hooks,
+                Mesh& mesh);
 
 }  // namespace plc

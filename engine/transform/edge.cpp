@@ -33,11 +33,7 @@ Vec3 vertex_normal(const Mesh& mesh, uint32_t v) {
 }
 
 bool bends(const Mesh& mesh, uint32_t v, float cosine) {
-  const Vec3 sum = normal_sum(mesh, v);
-  const float norm = length(sum);
-  bool any = false;
-  visit_normals(mesh, v, [&](Vec3 n) { any = any || dot(n, sum) < cosine * length(n) * norm; });
-  return any;
+  return normals_bend([&](const auto& use) { visit_normals(mesh, v, use); }, cosine);
 }
 
 }  // namespace plc

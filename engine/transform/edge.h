@@ -39,6 +39,17 @@ Vec3 vertex_normal(const Mesh& mesh, uint32_t v);
 
 // Whether a face around v turns further from that than by the angle of the cosine.
 bool bends(const Mesh& mesh, uint32_t v, float cosine);
+// The same of faces with these normals, as long as twice their areas; visit(use) calls use(normal)
+// for each.
+template <typename Visit>
+bool normals_bend(const Visit& visit, float cosine) {
+  Vec3 sum;
+  visit([&](Vec3 n) { sum = sum + n; });
+  const float norm = length(sum);
+  bool any = false;
+  visit([&](Vec3 n) { any = any || dot(n, sum) < cosine * length(n) * norm; });
+  return any;
+}
 
 // Whether the mesh has this edge, between these faces.
 inline bool has_edge(const Mesh& mesh, const Edge& e) {

@@ -51,7 +51,8 @@ Both surfaces_of(const samples::Volume& volume, float iso, int threads = 1) {
   both.adaptive.sizing = &sizing;
   const auto go_on = [&both] { return ++both.asked > 0; };
   REQUIRE(
-      plc::regular_iso_surface({view, iso, true}, values, schedule, both.adaptive, 0, go_on).ok());
+      plc::regular_iso_surface({view, iso, true}, values, schedule, both.adaptive, 0, {go_on, {}})
+          .ok());
   both.adaptive.sizing = nullptr;
   return both;
 }

@@ -3,10 +3,6 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "engine/base/constants.h"
-#include "engine/mesh/mesh.h"
-#include "engine/start/folds.h"
-
 namespace {
 
 // A plate across z: values 0, but for slices 4 .. 3 + thick, which are 1; with voxels of `voxel`
@@ -54,17 +50,4 @@ TEST_CASE("what is thin on one axis is thin, object or gap", "[thickness]") {
   gap.above = false;
   CHECK(plc::is_thin(gap, {4, 4, 4}, 1.51F));
   CHECK_FALSE(plc::is_thin(gap, {4, 4, 4}, 1.49F));
-}
-
-TEST_CASE("late sizes are smaller where the full image is thin", "[thickness]") {
-  const Plate plate(1, 0.5F);
-  plc::Sizing sizing;
-  sizing.object = plate.object;
-  plc::Mesh mesh;
-  mesh.delta = 1;
-  mesh.sizing = &sizing;
-  CHECK(plc::late_size(mesh, {4, 4, 4}) == plc::kLateSize);
-  sizing.full_image = true;
-  CHECK(plc::late_size(mesh, {4, 4, 4}) == plc::kThinSize);
-  CHECK(plc::late_size(mesh, {4, 4, 1}) == plc::kLateSize);
 }
