@@ -262,17 +262,20 @@ float SizeField::above_delta(float px, float py, float pz) const {
   const AxisCell y = axis_cell(py, scale_[1], offset_[1], cells_[1]);
   const AxisCell z = axis_cell(pz, scale_[2], offset_[2], cells_[2]);
   const auto row = static_cast<size_t>(cells_[0]), plane = row * static_cast<size_t>(cells_[1]);
-  const uint8_t* at = sizes_.data() + static_cast<size_t>(z.index) * plane +
-                      static_cast<size_t>(y.index) * row + static_cast<size_t>(x.index);
+  // On an axis of one cell there is none before it, nor a next one.
+  const auto first = [](const AxisCell& c) { return static_cast<size_t>(std::max(c.index, 0)); };
+  const auto to_next = [&](size_t a, size_t stride) { return cells_[a] > 1 ? stride : 0; };
+  const size_t next_x = to_next(0, 1), next_y = to_next(1, row), next_z = to_next(2, plane);
+  const uint8_t* at = sizes_.data() + first(z) * plane + first(y) * row + first(x);
   const auto along_x = [&](const uint8_t* p) {
-    const float a = p[0], b = p[1];
+    const float a = p[0], b = p[next_x];
     return a + (b - a) * x.fraction;
   };
   const auto along_y = [&](const uint8_t* p) {
-    const float a = along_x(p), b = along_x(p + row);
+    const float a = along_x(p), b = along_x(p + next_y);
     return a + (b - a) * y.fraction;
   };
-  const float a = along_y(at), b = along_y(at + plane);
+  const float a = along_y(at), b = along_y(at + next_z);
   return (a + (b - a) * z.fraction) * kStep - 1.0F;
 }
 

@@ -156,7 +156,8 @@ TEST_CASE("with obstacles results do not depend on threads, targets or interrupt
   }
   CHECK(samples::hash_now(one.get(), resumed.get()) == hash);
   // The obstacles belong to the run.
-  const plc_extras none = Walled().extras();
+  Walled bare;
+  const plc_extras none = bare.extras();
   CHECK(samples::restore(one.get(), pyramid.get(), scene.parameters, state, resumed, &none) ==
         PLC_INVALID_DATA);
 }

@@ -139,7 +139,8 @@ TEST_CASE("what is found depends neither on threads nor on the SIMD target", "[s
   Mesh mesh;
   fill_scene(mesh);
   const auto due = every(mesh, 2);
-  Surroundings one(mesh, plc::SerialExecutor(plc::SimdTarget::kScalar));
+  const plc::SerialExecutor scalar(plc::SimdTarget::kScalar);
+  Surroundings one(mesh, scalar);
   const Found first = searched(one, mesh, due);
   const plc::Vector<uint32_t> in_order = one.at_risk();
   for (const plc::SimdTarget simd : plc::available_simd_targets()) {
