@@ -95,7 +95,14 @@ std::optional<Cycle> denied_quadrangle(const Mesh& mesh, uint32_t u, const Neigh
 
 bool image_has(const Mesh& mesh, const Cycle& cycle) {
   const Vec3 centre = centre_of(mesh, cycle);
-  return mesh.sizing->inside(centre) == is_around_object(mesh, cycle, centre);
+  const bool object = is_around_object(mesh, cycle, centre);
+  if (mesh.sizing->inside(centre) == object) return true;
+  if (!object) return false;
+  for (uint32_t i = 0; i < cycle.size; ++i) {
+    const Vec3 a = mesh.at(cycle.corner[i]), b = mesh.at(cycle.corner[cycle.next(i)]);
+    if (mesh.sizing->inside(midpoint(a, b))) return true;
+  }
+  return false;
 }
 
 std::optional<Candidate> denied_cycle(const Mesh& mesh, uint32_t u) {

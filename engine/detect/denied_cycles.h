@@ -11,7 +11,8 @@
 namespace plc {
 
 // Of a mesh of sizes: whether the image says that what the cycle goes around is what the surface
-// says it is, a part of the object or a way through it.
+// says it is, a part of the object or a way through it. The centre of what goes around a thin part
+// may lie beside it: there the middle of an edge may tell that it is the object's.
 bool image_has(const Mesh& mesh, const Cycle& cycle);
 
 // An annular transformation along a cycle of three edges through u that goes around what the image

@@ -49,6 +49,24 @@ TEST_CASE("three edges around what the image does not have are denied", "[denied
   }
 }
 
+TEST_CASE("what the image has in the middle of an edge is not denied, a way through is",
+          "[denied_cycles]") {
+  // Of the middle cross-section the middle of an edge lies at x = -0.4: the image has the object
+  // there alone, or the way through it.
+  for (const bool way : {false, true}) {
+    Tube tube(3, way, way);
+    for (size_t i = 0; i < tube.image.values.size(); ++i) {
+      tube.image.values[i] = (i % 2 == 1) == way ? 1.0F : 0.0F;
+    }
+    plc::ImageObject& object = tube.image.sizing.object;
+    object.image.offset[0] = 0.5F;
+    object.iso = way ? 0.3F : 0.7F;
+    CHECK(tube.image.sizing.inside({0, 0, 4}) == way);
+    CHECK(tube.image.sizing.inside({-0.4F, 0, 4}) == !way);
+    CHECK(tube.denied(12).has_value() == way);
+  }
+}
+
 TEST_CASE("four edges are denied around a way through the object alone", "[denied_cycles]") {
   CHECK_FALSE(Tube(4, false, false).denied(16).has_value());
   CHECK_FALSE(Tube(4, false, true).denied(16).has_value());
