@@ -63,7 +63,7 @@ bool find_folds(const Mesh& mesh, const HalfEdges& surface, const Buffer<float>&
                 const Executor& executor, VoxelSet& folds) {
   constexpr size_t kBlock = 4096;
   const Sizing& sizing = *mesh.sizing;
-  if (!sizing.full_image) return false;
+  if (!sizing.full_image || sizing.field.noise() > kThinNoise) return false;
   const auto place = [&](uint32_t v) {
     const float* p = xyz.data() + size_t{3} * v;
     return Vec3{p[0], p[1], p[2]};

@@ -20,8 +20,8 @@ bool find_folds(const Mesh& mesh, VoxelSet& folds);
 
 // The same of the vertices of the surface that the mesh is to start from, but only where the full
 // image is thin: the rims of holes and of strips, which would be cut to pieces by edges that are
-// long for them before anything has moved. xyz: its vertices, in mesh space. The same for any
-// executor.
+// long for them before anything has moved. Where noise is above kThinNoise it makes such rims, and
+// none are found. xyz: its vertices, in mesh space. The same for any executor.
 bool find_folds(const Mesh& mesh, const HalfEdges& surface, const Buffer<float>& xyz,
                 const Executor& executor, VoxelSet& folds);
 

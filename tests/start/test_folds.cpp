@@ -7,6 +7,7 @@
 #include "engine/base/constants.h"
 #include "engine/base/schedule.h"
 #include "engine/start/iso_surface.h"
+#include "tests/samples/sample_volumes.h"
 
 namespace {
 
@@ -17,7 +18,7 @@ constexpr size_t kPlane = size_t{kSide} * kSide;
 // on, of the value 0.6 where iso is 0.5. A sixth of a voxel lies on both sides of the first and the
 // last.
 struct Disc {
-  explicit Disc(int32_t thick) : values(kPlane * kSide, 0) {
+  explicit Disc(int32_t thick, double noise = 0) : values(kPlane * kSide, 0) {
     for (int32_t z = 16; z < 16 + thick; ++z) {
       for (int32_t y = 0; y < kSide; ++y) {
         for (int32_t x = 0; x < kSide; ++x) {
@@ -27,6 +28,8 @@ struct Disc {
         }
       }
     }
+    samples::Random random(3);
+    for (float& v : values) v += static_cast<float>(random.uniform(-noise, noise));
     sizing.object = {{values.data(), {kSide, kSide, kSide}, {1, 1, 1}, {0, 0, 0}, {}}, 0.5F, true};
     sizing.full_image = true;
     const plc::SizeSpec spec;
@@ -72,8 +75,11 @@ TEST_CASE("of a thin disc the rims are folds to start with, and nothing between 
   CHECK(disc.folds(2) == found);
 }
 
-TEST_CASE("what is thick, or no full image, has no folds to start with", "[folds]") {
+TEST_CASE("what is thick, noisy or no full image has no folds to start with", "[folds]") {
   CHECK(Disc(4).folds(1).empty());
+  const Disc noisy(1, 0.5);
+  CHECK(noisy.sizing.field.noise() > plc::kThinNoise);
+  CHECK(noisy.folds(1).empty());
   Disc coarse(1);
   coarse.sizing.full_image = false;
   CHECK(coarse.folds(1).empty());
